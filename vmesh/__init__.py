@@ -1,0 +1,80 @@
+"""Photographs as triangle meshes.
+
+The public names, loaded when they are first used, so that ``import vmesh`` stays light::
+
+    mesh = vmesh.encode(array)             pixels -> Mesh
+    vmesh.dump(mesh, "photo.vmesh")        Mesh -> file;  dumps gives the bytes
+    mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
+    array = vmesh.render(mesh, scale=2)    Mesh -> pixels
+    vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG ... by the file's name
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from vmesh.codec.reader import loads
+    from vmesh.codec.stream import dump, load
+    from vmesh.codec.writer import dumps
+    from vmesh.color_lattice import ColorLattice
+    from vmesh.encoder.pipeline import encode
+    from vmesh.encoder.settings import Settings
+    from vmesh.errors import FormatError, ImageError, LimitError, VmeshError
+    from vmesh.formats.registry import export
+    from vmesh.formats.raster import render
+    from vmesh.limits import Limits
+    from vmesh.mesh import Mesh, Metadata
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "ColorLattice",
+    "FormatError",
+    "ImageError",
+    "LimitError",
+    "Limits",
+    "Mesh",
+    "Metadata",
+    "Settings",
+    "VmeshError",
+    "dump",
+    "dumps",
+    "encode",
+    "export",
+    "load",
+    "loads",
+    "render",
+]
+
+_HOMES: Final = {
+    "ColorLattice": "vmesh.color_lattice",
+    "FormatError": "vmesh.errors",
+    "ImageError": "vmesh.errors",
+    "LimitError": "vmesh.errors",
+    "Limits": "vmesh.limits",
+    "Mesh": "vmesh.mesh",
+    "Metadata": "vmesh.mesh",
+    "Settings": "vmesh.encoder.settings",
+    "VmeshError": "vmesh.errors",
+    "dump": "vmesh.codec.stream",
+    "dumps": "vmesh.codec.writer",
+    "encode": "vmesh.encoder.pipeline",
+    "export": "vmesh.formats.registry",
+    "load": "vmesh.codec.stream",
+    "loads": "vmesh.codec.reader",
+    "render": "vmesh.formats.raster",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])

@@ -1,0 +1,135 @@
+"""The lattice on which vertex colours live: integer levels, a step and a luma-chroma transform.
+
+A colour of three or four components is stored as luma and two chroma differences (YCoCg-R, the
+reversible form), each rounded to a multiple of its step; alpha and grey are plain multiples::
+
+    samples  R G B [A]   or   grey          8 bits, what is drawn
+       ^
+       |    G = Cg + t,  B = t - floor(Co / 2),  R = B + Co   with  t = Y - floor(Cg / 2)
+       |
+    values   Y Co Cg [A]  =  levels x steps
+       ^
+       |
+    levels   integers, what a file stores
+
+With all steps 1 the lattice holds every 8-bit colour exactly.
+
+References
+----------
+H. S. Malvar, G. J. Sullivan, "YCoCg-R: a color space with RGB reversibility and low dynamic
+range", JVT-I014r3, 2003, equations (6) and (7).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from vmesh.arrays import Int32Array, UInt8Array
+
+MAX_SAMPLE: Final = 255
+MAX_STEP: Final = 255
+
+# The error of a unit of Y, Co, Cg in the sum over R, G, B is 3, 1/2 and 3/4: steps in the
+# inverse ratio of the roots cost the same error in each component.
+_CHROMA_STEP_RATIOS: Final = (1.0, 2.4, 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ColorLattice:
+    """Steps of the colour components.
+
+    Parameters
+    ----------
+    steps : tuple of int
+        One step of 1 to 255 sample units for each component: ``(grey,)``, ``(Y, Co, Cg)`` or
+        ``(Y, Co, Cg, alpha)``.
+    """
+
+    steps: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.steps) not in (1, 3, 4):
+            raise ValueError(f"expected 1, 3 or 4 colour components, got {len(self.steps)}")
+        if not all(1 <= step <= MAX_STEP for step in self.steps):
+            raise ValueError(f"expected colour steps of 1 to {MAX_STEP}, got {self.steps}")
+
+    @classmethod
+    def uniform(cls, n_components: int, step: int) -> ColorLattice:
+        """Lattice whose components cost about the same error as luma with this step."""
+        if n_components == 1:
+            return cls((step,))
+        chroma = tuple(min(MAX_STEP, round(step * ratio)) for ratio in _CHROMA_STEP_RATIOS)
+        steps = (1, 1, 1) if step == 1 else chroma
+        return cls(steps if n_components == 3 else (*steps, step))
+
+    @property
+    def n_components(self) -> int:
+        """Number of colour components."""
+        return len(self.steps)
+
+    def level_bounds(self) -> tuple[Int32Array, Int32Array]:
+        """Lowest and highest level of each component, two arrays of shape (c,)."""
+        steps = np.asarray(self.steps, dtype=np.int32)
+        highest = -(-MAX_SAMPLE // steps)
+        lowest = np.zeros_like(highest)
+        lowest[1:3] = -highest[1:3]
+        return lowest, highest
+
+    def zero_levels(self, n: int) -> Int32Array:
+        """Levels of black, shape (n, c), int32."""
+        return np.zeros((n, self.n_components), dtype=np.int32)
+
+    def levels_from_colors(self, colors: npt.ArrayLike) -> Int32Array:
+        """Levels nearest to 8-bit colours.
+
+        Parameters
+        ----------
+        colors : array_like
+            Shape (n, c), samples of 0 to 255 in the order grey, RGB or RGBA.
+
+        Returns
+        -------
+        ndarray
+            Shape (n, c), int32, within :meth:`level_bounds`.
+        """
+        values = np.array(colors, dtype=np.int32)
+        if values.ndim != 2 or values.shape[1] != self.n_components:
+            raise ValueError(f"expected colours of shape (n, {self.n_components})")
+        if self.n_components >= 3:
+            red, green, blue = values[:, 0].copy(), values[:, 1].copy(), values[:, 2].copy()
+            orange = red - blue
+            middle = blue + (orange >> 1)
+            values[:, 2] = green - middle
+            values[:, 0] = middle + (values[:, 2] >> 1)
+            values[:, 1] = orange
+        steps = np.asarray(self.steps, dtype=np.int32)
+        lowest, highest = self.level_bounds()
+        levels: Int32Array = np.clip((2 * values + steps) // (2 * steps), lowest, highest)
+        return levels
+
+    def colors_from_levels(self, levels: npt.NDArray[np.integer]) -> UInt8Array:
+        """8-bit colours of lattice levels, the exact arithmetic of the format.
+
+        Parameters
+        ----------
+        levels : ndarray
+            Shape (n, c), integers.
+
+        Returns
+        -------
+        ndarray
+            Shape (n, c), uint8, in the order grey, RGB or RGBA.
+        """
+        values = levels.astype(np.int32) * np.asarray(self.steps, dtype=np.int32)
+        if self.n_components >= 3:
+            luma, orange, green_minus = (values[:, i].copy() for i in range(3))
+            middle = luma - (green_minus >> 1)
+            blue = middle - (orange >> 1)
+            values[:, 0] = blue + orange
+            values[:, 1] = green_minus + middle
+            values[:, 2] = blue
+        return np.clip(values, 0, MAX_SAMPLE).astype(np.uint8)

@@ -1,0 +1,1 @@
+"""Pixels -> Mesh. ``pipeline`` names the stages in order; there is a module for each."""

@@ -1,0 +1,92 @@
+"""Vertex colours: taken from the vertices' pixels, or fitted to all pixels."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from vmesh.arrays import Float64Array, Int32Array, UInt8Array
+from vmesh.kernels.least_squares import solve
+from vmesh.kernels.scanline import SUBPIXEL, accumulate
+
+_RIDGE: Final = 1e-2  # in pixels: holds a vertex whose triangles cover no pixel centre
+_TOLERANCE: Final = 1e-3
+_MAX_STEPS: Final = 200
+_HIDDEN_WEIGHT: Final = 1e-4  # of a transparent pixel's colour, so that the system stays regular
+
+
+def sample_colors(image: UInt8Array, vertices: Int32Array, unit: int) -> Float64Array:
+    """Colours of the pixels that the vertices lie in; the paper's choice.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    vertices : ndarray
+        Shape (n, 2), int32, in lattice units.
+    unit : int
+        Lattice units in a pixel.
+
+    Returns
+    -------
+    ndarray
+        Shape (n, c), float64.
+    """
+    height, width = image.shape[:2]
+    x = np.minimum(vertices[:, 0] // unit, width - 1)
+    y = np.minimum(vertices[:, 1] // unit, height - 1)
+    return image[y, x].astype(np.float64)
+
+
+def fit_colors(
+    image: UInt8Array, vertices: Int32Array, triangles: Int32Array, unit: int
+) -> Float64Array:
+    """Colours that make the rendered mesh closest to the picture in squared error.
+
+    Solves (A'GA + r I) c = A'G y + r s, where A holds the barycentric weights of every pixel's
+    centre, G the pixels' weights, y the picture and s the sampled colours, with a small r. An
+    RGBA picture's colours count in proportion to their alpha, so that what is hidden in
+    transparent pixels does not leak; alpha is fitted for itself.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    vertices, triangles : ndarray
+        Shapes (n, 2) and (m, 3), int32; they cover the picture.
+    unit : int
+        Lattice units in a pixel.
+
+    Returns
+    -------
+    ndarray
+        Shape (n, c), float64, 0 to 255.
+    """
+    start = sample_colors(image, vertices, unit)
+    whole = np.ones(image.shape[:2])
+    if image.shape[2] != 4:
+        return _fit(image, whole, vertices, triangles, unit, start)
+    visible = np.maximum(image[:, :, 3] / 255.0, _HIDDEN_WEIGHT)
+    colors = _fit(image[:, :, :3], visible, vertices, triangles, unit, start[:, :3])
+    alpha = _fit(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
+    return np.concatenate([colors, alpha], axis=1)
+
+
+def _fit(
+    image: UInt8Array,
+    weights: Float64Array,
+    vertices: Int32Array,
+    triangles: Int32Array,
+    unit: int,
+    start: Float64Array,
+) -> Float64Array:
+    """Weighted fit of the components of `image`; `weights` has shape (h, w)."""
+    products = np.zeros((len(triangles), 6))
+    moments = np.zeros(start.shape)
+    positions = vertices.astype(np.int64) * (SUBPIXEL // unit)
+    samples = np.ascontiguousarray(image, dtype=np.float64)
+    accumulate(positions, triangles, samples, weights, products, moments)
+    initial = np.ascontiguousarray(start)
+    fitted = solve(triangles, products, moments, _RIDGE, initial, _TOLERANCE, _MAX_STEPS)
+    return np.clip(fitted, 0.0, 255.0)

@@ -1,0 +1,130 @@
+"""The encoder, from top to bottom: pixels -> Mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from vmesh.arrays import UInt8Array
+from vmesh.color_lattice import ColorLattice
+from vmesh.encoder.colors import fit_colors, sample_colors
+from vmesh.encoder.salience import compute_salience
+from vmesh.encoder.sampling import sample
+from vmesh.encoder.settings import Settings
+from vmesh.kernels.delaunay import delaunay
+from vmesh.mesh import MAX_SIDE, Mesh, Metadata
+
+Progress = Callable[[str], None]
+"""Called with the name of each stage as it begins."""
+
+STAGES: Final = ("salience", "sampling", "triangulation", "colors", "quantization")
+
+_SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
+
+
+def encode(
+    array: npt.ArrayLike,
+    *,
+    metadata: Metadata | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Mesh:
+    """Mesh of a picture.
+
+    Parameters
+    ----------
+    array : array_like
+        Shape (h, w), (h, w, 3) or (h, w, 4), uint8: grey, RGB or RGBA, alpha not multiplied.
+    metadata : Metadata, optional
+        What travels with the picture.
+    progress : callable, optional
+        Called with the name of each of `STAGES` as it begins.
+    **settings
+        Fields of :class:`vmesh.Settings`.
+
+    Returns
+    -------
+    Mesh
+        In canonical order. The same picture, settings and seed give the same mesh.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If the array or a setting is not as described.
+    """
+    chosen = Settings(**settings)
+    image = as_image(array)
+    height, width = image.shape[:2]
+    report = progress or _silent
+
+    report("salience")
+    salience = compute_salience(visible_planes(image), chosen.gamma)
+
+    report("sampling")
+    samples = sample(
+        salience,
+        n_points=chosen.n_points(width, height),
+        sampler=chosen.sampler,
+        diffusion=chosen.diffusion,
+        seed=chosen.seed,
+    )
+    vertices = samples.vertices()
+
+    report("triangulation")
+    triangles = delaunay(vertices)
+
+    report("colors")
+    unit = 1 << _SUBDIVISION
+    if chosen.colors == "fitted":
+        colors = fit_colors(image, vertices, triangles, unit)
+    else:
+        colors = sample_colors(image, vertices, unit)
+
+    report("quantization")
+    lattice = ColorLattice.uniform(image.shape[2], chosen.color_step)
+    levels = lattice.levels_from_colors(np.rint(colors))
+    return Mesh(
+        width,
+        height,
+        vertices,
+        triangles,
+        levels,
+        lattice,
+        _SUBDIVISION,
+        metadata or Metadata(),
+    )
+
+
+def as_image(array: npt.ArrayLike) -> UInt8Array:
+    """The picture as a contiguous array of shape (h, w, c), uint8, c being 1, 3 or 4."""
+    given = np.asarray(array)
+    if given.dtype != np.uint8:
+        raise TypeError(f"expected a picture of uint8, got {given.dtype}")
+    if given.ndim == 2:
+        given = given[:, :, None]
+    if given.ndim != 3 or given.shape[2] not in (1, 3, 4):
+        raise ValueError(
+            f"expected a picture of shape (h, w), (h, w, 3) or (h, w, 4), got {given.shape}"
+        )
+    height, width = given.shape[:2]
+    if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE):
+        raise ValueError(
+            f"expected a picture of 1 to {MAX_SIDE} pixels a side, got {width} x {height}"
+        )
+    return np.ascontiguousarray(given)
+
+
+def visible_planes(image: UInt8Array) -> UInt8Array:
+    """Planes of a picture, shape (c, h, w), uint8, colours multiplied by alpha."""
+    planes = np.ascontiguousarray(image.transpose(2, 0, 1))
+    if len(planes) == 4:
+        alpha = planes[3].astype(np.uint16)
+        planes[:3] = (planes[:3] * alpha + 127) // 255
+    return planes
+
+
+def _silent(stage: str) -> None:
+    """Report nothing."""

@@ -1,0 +1,45 @@
+"""The errors a caller may catch.
+
+::
+
+    Exception
+    ├── VmeshError               everything this library raises on purpose about data
+    │   ├── FormatError          the bytes are not a conforming .vmesh file (also a ValueError)
+    │   ├── LimitError           conforming, but more than the caller allows
+    │   └── ImageError           the file is not a photograph that can be read
+    ├── ValueError, TypeError    a wrong argument
+    └── OSError                  the operating system refused
+"""
+
+from __future__ import annotations
+
+
+class VmeshError(Exception):
+    """Base of all errors about the data that vmesh was given."""
+
+
+class FormatError(VmeshError, ValueError):
+    """The bytes are not a conforming ``.vmesh`` file.
+
+    Parameters
+    ----------
+    code : str
+        The stable name of the broken rule, from the error table of ``spec/vmesh.md``.
+    message : str
+        What was found and what was wanted.
+    offset : int
+        Byte offset in the file at which the rule is broken.
+    """
+
+    def __init__(self, code: str, message: str, offset: int) -> None:
+        super().__init__(f"{message} (code {code}, at byte {offset})")
+        self.code = code
+        self.offset = offset
+
+
+class LimitError(VmeshError):
+    """The data conform, but ask for more than the caller's :class:`vmesh.Limits` allow."""
+
+
+class ImageError(VmeshError):
+    """The file is not a photograph that can be read."""

@@ -1,0 +1,370 @@
+"""The canonical Delaunay triangulation of integer points, by an exact radial sweep.
+
+Points are added in order of their distance from a centre. All earlier points lie in the disc
+that the new point is outside of, or on the rim of, so the new point always sees a part of their
+convex hull: it is joined to that part, and edges are flipped until every one is locally Delaunay
+(the in-circle test), in the manner of Lawson.
+
+A triangle t has the half-edges 3t, 3t+1, 3t+2; ``origin[e]`` is the vertex a half-edge starts at
+and ``twin[e]`` the half-edge on its other side, -1 on the hull::
+
+               a                 edge e runs from b to c, its twin from c to b;
+             / | \\               the quad a, b, d, c has the diagonal b-c now
+            /  |  \\              and a-d after a flip
+           b --e-- c
+            \\  |  /
+             \\ | /
+               d
+
+All tests are exact: coordinates are integers with sides of at most 2**19, a cross product fits 64
+bits and the in-circle determinant is formed in two 64-bit words.
+
+Ties (four points on a circle) are broken without regard to any order of work: the diagonal that
+touches the quad's last vertex in raster order wins. This is the triangulation that results when
+every point's height on the paraboloid is lowered by an infinitesimal that grows with its raster
+order, so it is unique.
+
+References
+----------
+D. A. Sinclair, "S-hull: a fast radial sweep-hull routine for Delaunay triangulation",
+arXiv:1604.01428, 2016. C. L. Lawson, "Software for C1 surface interpolation", 1977.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vmesh.arrays import Int32Array, Int64Array
+from vmesh.kernels.jit import kernel
+
+
+@kernel
+def cross(ax: int, ay: int, bx: int, by: int, cx: int, cy: int) -> int:
+    """Doubled signed area of a, b, c: positive where they turn from the x axis towards y."""
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+
+@kernel
+def in_circle(ax: int, ay: int, bx: int, by: int, cx: int, cy: int, dx: int, dy: int) -> int:
+    """Sign of the in-circle determinant: 1 if d is inside the circle of the positive a, b, c.
+
+    Exact for coordinate differences of at most 2**19. Each product of a squared length s and a
+    cross product t is formed as s (t >> 20) and s (t & 0xFFFFF), summed apart.
+    """
+    ax -= dx
+    ay -= dy
+    bx -= dx
+    by -= dy
+    cx -= dx
+    cy -= dy
+    s0 = ax * ax + ay * ay
+    s1 = bx * bx + by * by
+    s2 = cx * cx + cy * cy
+    t0 = bx * cy - by * cx
+    t1 = cx * ay - cy * ax
+    t2 = ax * by - ay * bx
+    high = s0 * (t0 >> 20) + s1 * (t1 >> 20) + s2 * (t2 >> 20)
+    low = s0 * (t0 & 0xFFFFF) + s1 * (t1 & 0xFFFFF) + s2 * (t2 & 0xFFFFF)
+    high += low >> 20
+    if high > 0:
+        return 1
+    if high < 0:
+        return -1
+    return 1 if (low & 0xFFFFF) > 0 else 0
+
+
+@kernel
+def must_flip(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
+    """Whether the diagonal b-c of the quad with apexes a and d has to become a-d.
+
+    Vertices are numbered in raster order, so the last one is the largest index.
+    """
+    side = in_circle(
+        points[a, 0],
+        points[a, 1],
+        points[b, 0],
+        points[b, 1],
+        points[c, 0],
+        points[c, 1],
+        points[d, 0],
+        points[d, 1],
+    )
+    return side > 0 or (side == 0 and max(a, d) > max(b, c))
+
+
+@kernel
+def link(twin: Int32Array, e: int, f: int) -> None:
+    """Make two half-edges each other's twin; either may be -1."""
+    if e >= 0:
+        twin[e] = f
+    if f >= 0:
+        twin[f] = e
+
+
+@kernel
+def flip(origin: Int32Array, twin: Int32Array, e: int) -> None:
+    """Turn the diagonal of the two triangles at half-edge e.
+
+    Before, e runs from b to c and the triangles are (b, c, a) and (c, b, d); after, e's triangle
+    is (d, c, a) with the diagonal as the half-edge from a to d, and the other is (a, b, d).
+    """
+    f = twin[e]
+    e_next = e - 2 if e % 3 == 2 else e + 1
+    e_prev = e + 2 if e % 3 == 0 else e - 1
+    f_next = f - 2 if f % 3 == 2 else f + 1
+    f_prev = f + 2 if f % 3 == 0 else f - 1
+    a = origin[e_prev]
+    d = origin[f_prev]
+    outer_e = twin[e_prev]
+    outer_f = twin[f_prev]
+    origin[e] = d
+    origin[f] = a
+    link(twin, e, outer_f)
+    link(twin, f, outer_e)
+    link(twin, e_prev, f_prev)
+    # e: d -> c, e_next: c -> a, e_prev: a -> d;  f: a -> b, f_next: b -> d, f_prev: d -> a.
+
+
+@kernel
+def legalize(
+    points: Int64Array,
+    origin: Int32Array,
+    twin: Int32Array,
+    hull_edge: Int32Array,
+    stack: Int32Array,
+    edge: int,
+) -> None:
+    """Flip until every edge is locally Delaunay again after a point was added.
+
+    Parameters
+    ----------
+    edge : int
+        The edge opposite to the new point, in the new triangle.
+    hull_edge : ndarray
+        Shape (n,), int32: the hull's half-edge that starts at a vertex; flips keep it right.
+    stack : ndarray
+        Room for as many edges as the triangulation has triangles: those on it face the new point.
+    """
+    size = 1
+    stack[0] = edge
+    while size > 0:
+        size -= 1
+        e = stack[size]
+        f = twin[e]
+        if f < 0:
+            continue
+        a = origin[e + 2 if e % 3 == 0 else e - 1]
+        d = origin[f + 2 if f % 3 == 0 else f - 1]
+        if must_flip(points, a, origin[e], origin[f], d):
+            flip(origin, twin, e)
+            if twin[e] < 0:
+                hull_edge[d] = e
+            if twin[f] < 0:
+                hull_edge[a] = f
+            stack[size] = e
+            stack[size + 1] = f - 2 if f % 3 == 2 else f + 1
+            size += 2
+
+
+@kernel
+def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
+    """Number in 0 .. n_keys - 1 that grows with the direction of (dx, dy) around the circle."""
+    length = abs(dx) + abs(dy)
+    if length == 0.0:
+        return 0
+    ratio = dx / length
+    turn = (3.0 - ratio) / 4.0 if dy > 0 else (1.0 + ratio) / 4.0
+    return int(turn * n_keys) % n_keys
+
+
+@kernel
+def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
+    """Number of canonical Delaunay triangles of points, written to `triangles`.
+
+    Parameters
+    ----------
+    points : ndarray
+        Shape (n, 2), int64, distinct, in raster order, with sides of at most 2**19.
+    order : ndarray
+        Shape (n,), int64: the points by their distance from the centre of their bounding box.
+    triangles : ndarray
+        Shape (max(2 n, 1), 3), int32: room for the result, positively oriented.
+
+    Returns
+    -------
+    int
+        0 if all points lie on a line, -1 if two of them coincide.
+    """
+    n_points = points.shape[0]
+    if n_points < 3:
+        return 0
+    origin = triangles.reshape(-1)
+    twin = np.full(origin.shape[0], -1, np.int32)
+    stack = np.empty(triangles.shape[0], np.int32)
+    hull_edge = np.full(n_points, -1, np.int32)
+    hull_next = np.full(n_points, -1, np.int32)  # -1: not on the hull
+    hull_prev = np.full(n_points, -1, np.int32)
+    n_keys = int(np.ceil(np.sqrt(n_points)))
+    hull_hash = np.full(n_keys, -1, np.int32)
+    cx = (points[:, 0].min() + points[:, 0].max()) / 2.0
+    cy = (points[:, 1].min() + points[:, 1].max()) / 2.0
+
+    # The first three points that are not on a line. Those passed over lie on the line of the
+    # first two, beyond their segment, so they are outside the first triangle as well.
+    a, b = order[0], order[1]
+    if points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]:
+        return -1
+    seed = 2
+    side = 0
+    while seed < n_points:
+        c = order[seed]
+        side = cross(
+            points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]
+        )
+        if side != 0:
+            break
+        seed += 1
+    if side == 0:
+        return 0
+    c = order[seed]
+    if side < 0:
+        a, b = b, a
+    origin[0], origin[1], origin[2] = a, b, c
+    hull_edge[a], hull_edge[b], hull_edge[c] = 0, 1, 2
+    hull_next[a], hull_next[b], hull_next[c] = b, c, a
+    hull_prev[a], hull_prev[b], hull_prev[c] = c, a, b
+    for v in (a, b, c):
+        hull_hash[pseudo_angle(points[v, 0] - cx, points[v, 1] - cy, n_keys)] = v
+    last = c
+    n_edges = 3
+
+    for i in range(2, n_points):
+        if i == seed:
+            continue
+        p = order[i]
+        px, py = points[p, 0], points[p, 1]
+        key = pseudo_angle(px - cx, py - cy, n_keys)
+        start = last
+        for j in range(n_keys):
+            hint = hull_hash[(key + j) % n_keys]
+            if hint >= 0 and hull_next[hint] >= 0:
+                start = hull_prev[hint]
+                break
+        # The first hull edge v -> w that the point sees.
+        v = start
+        w = hull_next[v]
+        while cross(points[v, 0], points[v, 1], points[w, 0], points[w, 1], px, py) >= 0:
+            v = w
+            w = hull_next[v]
+            if v == start:
+                return -1
+        # Triangle (w, v, p).
+        e = n_edges
+        n_edges += 3
+        origin[e], origin[e + 1], origin[e + 2] = w, v, p
+        link(twin, e, hull_edge[v])
+        hull_edge[v] = e + 1
+        hull_edge[p] = e + 2
+        legalize(points, origin, twin, hull_edge, stack, e)
+        # The edges after it that the point sees too.
+        u = hull_next[w]
+        while cross(points[w, 0], points[w, 1], points[u, 0], points[u, 1], px, py) < 0:
+            e = n_edges
+            n_edges += 3
+            origin[e], origin[e + 1], origin[e + 2] = u, w, p
+            link(twin, e, hull_edge[w])
+            link(twin, e + 1, hull_edge[p])
+            hull_edge[p] = e + 2
+            hull_next[w] = -1
+            legalize(points, origin, twin, hull_edge, stack, e)
+            w = u
+            u = hull_next[w]
+        # And those before it, which only a walk that began in their midst can have skipped.
+        if v == start:
+            u = hull_prev[v]
+            while cross(points[u, 0], points[u, 1], points[v, 0], points[v, 1], px, py) < 0:
+                e = n_edges
+                n_edges += 3
+                origin[e], origin[e + 1], origin[e + 2] = v, u, p
+                link(twin, e, hull_edge[u])
+                link(twin, e + 2, hull_edge[v])
+                hull_edge[u] = e + 1
+                hull_next[v] = -1
+                legalize(points, origin, twin, hull_edge, stack, e)
+                v = u
+                u = hull_prev[v]
+        hull_next[v], hull_prev[p] = p, v
+        hull_next[p], hull_prev[w] = w, p
+        hull_hash[key] = p
+        last = p
+    return n_edges // 3
+
+
+@kernel
+def sort_triangles(triangles: Int32Array, n_points: int) -> Int32Array:
+    """Triangles with the lowest vertex first, in lexicographic order; two counting sorts.
+
+    Parameters
+    ----------
+    triangles : ndarray
+        Shape (m, 3), int32, indices below `n_points`; turned in place.
+
+    Returns
+    -------
+    ndarray
+        Shape (m, 3), int32.
+    """
+    count = triangles.shape[0]
+    for t in range(count):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        if b < a and b < c:
+            triangles[t, 0], triangles[t, 1], triangles[t, 2] = b, c, a
+        elif c < a and c < b:
+            triangles[t, 0], triangles[t, 1], triangles[t, 2] = c, a, b
+    source = triangles
+    for column in (1, 0):
+        place = np.zeros(n_points + 1, np.int64)
+        for t in range(count):
+            place[source[t, column] + 1] += 1
+        for v in range(n_points):
+            place[v + 1] += place[v]
+        target = np.empty_like(triangles)
+        for t in range(count):
+            v = source[t, column]
+            for corner in range(3):
+                target[place[v], corner] = source[t, corner]
+            place[v] += 1
+        source = target
+    return source
+
+
+def delaunay(vertices: Int32Array) -> Int32Array:
+    """Canonical Delaunay triangles of integer points.
+
+    Parameters
+    ----------
+    vertices : ndarray
+        Shape (n, 2), int32, distinct, in raster order (by y, then x), 0 to 2**19.
+
+    Returns
+    -------
+    ndarray
+        Shape (m, 3), int32, positively oriented, in canonical order. Of four points on a circle
+        the diagonal that touches the last one in raster order is taken. Empty if all points lie
+        on a line.
+
+    Raises
+    ------
+    ValueError
+        If two points coincide.
+    """
+    points = vertices.astype(np.int64)
+    room = np.empty((max(2 * len(points), 1), 3), dtype=np.int32)
+    if len(points) < 3:
+        return room[:0]
+    centred = 2 * points - (points.min(axis=0) + points.max(axis=0))
+    order = np.argsort((centred * centred).sum(axis=1))
+    count = sweep(points, order, room)
+    if count < 0:
+        raise ValueError("two vertices share a position")
+    return sort_triangles(room[:count], len(points))

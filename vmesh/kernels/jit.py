@@ -1,0 +1,51 @@
+"""How kernels are compiled: one decorator, so that the flags stand in one place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from numba import njit
+from numba.core import event
+
+if TYPE_CHECKING:
+    from numba.core.event import Event
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function to machine code on its first call and keep the code on disk.
+
+    No fast-math and no parallel loops: results depend neither on the machine's vector width nor
+    on its number of threads. Where no cache folder is writable the code is compiled anew in each
+    process.
+    """
+    try:
+        compiled: Function = njit(cache=True, nogil=True)(function)
+    except RuntimeError:  # Numba found no folder that it may write its cache to.
+        compiled = njit(nogil=True)(function)
+    return compiled
+
+
+class _FirstCompilation(event.Listener):
+    """Calls `notify` when the first kernel is about to be compiled."""
+
+    def __init__(self, notify: Callable[[], None]) -> None:
+        self.notify: Callable[[], None] | None = notify
+
+    def on_start(self, event: Event) -> None:
+        if self.notify is not None:
+            notify, self.notify = self.notify, None
+            notify()
+
+    def on_end(self, event: Event) -> None:
+        pass
+
+
+@contextmanager
+def on_first_compilation(notify: Callable[[], None]) -> Iterator[None]:
+    """Call `notify` once if a kernel inside the block is not in the cache and must be compiled."""
+    with event.install_listener("numba:compile", _FirstCompilation(notify)):
+        yield

@@ -1,0 +1,372 @@
+"""The mesh: integer vertices on a lattice, a colour level at each, triangles that cover a canvas.
+
+::
+
+    (0, 0) ---- x ---->  (width, 0)         pixels; a pixel's centre is at +1/2, +1/2
+      |    .       .                        vertices are multiples of 1 / 2**subdivision pixel
+      y       .                             triangles turn from x towards y: clockwise on a
+      v   .        .                        screen, a positive cross product in these axes
+    (0, height)          (width, height)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from vmesh.arrays import Int32Array, Int64Array, UInt8Array
+from vmesh.color_lattice import ColorLattice
+
+MAX_SIDE: Final = 65_535
+MAX_SUBDIVISION: Final = 8
+# With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
+MAX_LATTICE_SIDE: Final = 1 << 19
+
+Matrix = Sequence[float]
+"""An affine map ``(a, b, c, d, e, f)`` in SVG's order: x' = a x + c y + e, y' = b x + d y + f."""
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """What travels with a picture beside its pixels.
+
+    Parameters
+    ----------
+    icc, exif, xmp : bytes
+        ICC profile, EXIF block (its orientation already applied to the picture) and XMP packet,
+        empty if there is none.
+    unknown : tuple of (bytes, bytes)
+        Tag and content of ancillary chunks that this version does not know: kept as they are.
+    """
+
+    icc: bytes = b""
+    exif: bytes = b""
+    xmp: bytes = b""
+    unknown: tuple[tuple[bytes, bytes], ...] = ()
+
+
+def _frozen(array: npt.ArrayLike, dtype: npt.DTypeLike, name: str) -> npt.NDArray[np.integer]:
+    """Read-only contiguous copy of a two-dimensional integer array."""
+    given = np.asarray(array)
+    if given.ndim != 2 or given.dtype.kind not in "iu":
+        raise ValueError(
+            f"expected {name} as a two-dimensional integer array, "
+            f"got shape {given.shape} of {given.dtype}"
+        )
+    limits = np.iinfo(dtype)
+    if given.size and (int(given.min()) < limits.min or int(given.max()) > limits.max):
+        raise ValueError(f"{name} do not fit {np.dtype(dtype)}")
+    copy: npt.NDArray[np.integer] = np.array(given, dtype=dtype, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """A picture as a triangle mesh with a colour at every vertex.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the canvas in pixels, 1 to 65,535.
+    vertices : ndarray
+        Shape (n, 2), int32: x right, y down, in lattice units from the top left corner.
+    triangles : ndarray
+        Shape (m, 3), int32: indices into `vertices`, positively oriented.
+    levels : ndarray
+        Shape (n, c), int32: colour levels on `lattice`; `colors` gives them as samples.
+    lattice : ColorLattice
+        Steps of the colour components.
+    subdivision : int
+        A pixel is 2**subdivision lattice units wide, 0 to 8.
+    metadata : Metadata
+        ICC profile, EXIF and XMP.
+    """
+
+    width: int
+    height: int
+    vertices: Int32Array
+    triangles: Int32Array
+    levels: Int32Array
+    lattice: ColorLattice
+    subdivision: int = 0
+    metadata: Metadata = field(default_factory=Metadata)
+
+    def __post_init__(self) -> None:
+        for name in ("vertices", "triangles", "levels"):
+            object.__setattr__(self, name, _frozen(getattr(self, name), np.int32, name))
+
+    @classmethod
+    def from_colors(
+        cls,
+        width: int,
+        height: int,
+        vertices: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        colors: npt.ArrayLike,
+        *,
+        step: int = 1,
+        subdivision: int = 0,
+        metadata: Metadata | None = None,
+    ) -> Mesh:
+        """Mesh with 8-bit vertex colours rounded to a lattice of the given luma step.
+
+        Parameters
+        ----------
+        colors : array_like
+            Shape (n, 1), (n, 3) or (n, 4), samples of 0 to 255; kept exactly where `step` is 1.
+        """
+        samples = np.asarray(colors)
+        if samples.ndim != 2:
+            raise ValueError(f"expected colours of shape (n, c), got {samples.shape}")
+        lattice = ColorLattice.uniform(samples.shape[1], step)
+        return cls(
+            width,
+            height,
+            np.asarray(vertices),
+            np.asarray(triangles),
+            lattice.levels_from_colors(samples),
+            lattice,
+            subdivision,
+            metadata or Metadata(),
+        )
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices."""
+        return int(self.vertices.shape[0])
+
+    @property
+    def n_triangles(self) -> int:
+        """Number of triangles."""
+        return int(self.triangles.shape[0])
+
+    @property
+    def n_components(self) -> int:
+        """Number of colour components: 1 grey, 3 RGB, 4 RGB and alpha."""
+        return self.lattice.n_components
+
+    @property
+    def unit(self) -> int:
+        """Lattice units in a pixel."""
+        return 1 << self.subdivision
+
+    @property
+    def colors(self) -> UInt8Array:
+        """Colours of the vertices, shape (n, c), uint8: grey, RGB or RGBA, alpha not multiplied."""
+        return self.lattice.colors_from_levels(self.levels)
+
+    @property
+    def points(self) -> npt.NDArray[np.float64]:
+        """Positions of the vertices in pixels, shape (n, 2), float64, exact."""
+        return self.vertices / float(self.unit)
+
+    def doubled_areas(self) -> Int64Array:
+        """Twice the signed area of every triangle in square lattice units, shape (m,), int64."""
+        corners = self.vertices.astype(np.int64)[self.triangles]
+        first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        areas: Int64Array = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+        return areas
+
+    @property
+    def covers_canvas(self) -> bool:
+        """Whether the triangles' areas add up to the canvas."""
+        whole = 2 * self.width * self.height * self.unit**2
+        return bool(int(self.doubled_areas().sum()) == whole)
+
+    def check(self) -> None:
+        """Raise :class:`ValueError` unless this is a mesh that a file may hold.
+
+        The area rule: vertices are distinct and on the canvas, every triangle is positively
+        oriented, and the areas add up to the canvas. With every inner edge shared by exactly two
+        triangles and every other edge on the border, that means that each point of the canvas
+        is covered exactly once.
+        """
+        self._check_header()
+        self._check_arrays()
+        self._check_area()
+        self._check_edges()
+
+    def canonical(self) -> Mesh:
+        """The same mesh in the order that files use.
+
+        Vertices come in raster order (by y, then x), each triangle starts with its lowest vertex,
+        and triangles come in lexicographic order.
+        """
+        order = np.argsort(_position_keys(self.vertices), kind="stable")
+        rank = np.empty(self.n_vertices, dtype=np.int32)
+        rank[order] = np.arange(self.n_vertices, dtype=np.int32)
+        return self.replaced(
+            vertices=self.vertices[order],
+            levels=self.levels[order],
+            triangles=sorted_triangles(rank[self.triangles]),
+        )
+
+    def transform(self, matrix: Matrix) -> Mesh:
+        """The mesh with its vertices moved by an affine map, its topology as it was.
+
+        The canvas becomes the whole-pixel box around the moved canvas, and the mesh is placed in
+        it; so a translation alone changes nothing. Scalings, reflections and quarter turns are
+        stretched by less than half a pixel so that the mesh covers its new canvas exactly. After
+        any other map corners of the canvas stay uncovered: such a mesh renders and exports, but a
+        ``.vmesh`` file does not store it.
+
+        Parameters
+        ----------
+        matrix : sequence of six float
+            ``(a, b, c, d, e, f)`` in SVG's order, in pixels.
+
+        Raises
+        ------
+        ValueError
+            If the matrix is singular, or the result is too large or too small for its triangles
+            to keep their areas on the finest lattice.
+        """
+        linear, _ = as_affine(matrix)
+        determinant = float(np.linalg.det(linear))
+        if determinant == 0.0:
+            raise ValueError("the matrix is singular: it would flatten the mesh")
+        canvas = np.array([[0, 0], [self.width, 0], [0, self.height], [self.width, self.height]])
+        moved_canvas = canvas @ linear.T
+        low = moved_canvas.min(axis=0)
+        extent = moved_canvas.max(axis=0) - low
+        axis_aligned = not (linear[0, 1] or linear[1, 0]) or not (linear[0, 0] or linear[1, 1])
+        size = np.maximum(np.rint(extent) if axis_aligned else np.ceil(extent - 1e-9), 1)
+        if size.max() > MAX_SIDE:
+            raise ValueError(f"the moved canvas is wider or higher than {MAX_SIDE} pixels")
+        stretch = size / extent if axis_aligned else np.ones(2)
+        subdivision = min(MAX_SUBDIVISION, int(np.log2(MAX_LATTICE_SIDE / size.max())))
+        points = (self.points @ linear.T - low) * stretch
+        triangles = self.triangles if determinant > 0 else self.triangles[:, ::-1]
+        moved = self.replaced(
+            width=int(size[0]),
+            height=int(size[1]),
+            subdivision=subdivision,
+            vertices=np.rint(points * (1 << subdivision)).astype(np.int32),
+            triangles=triangles,
+        )
+        if not (moved.doubled_areas() > 0).all():
+            raise ValueError("the map makes triangles too small for the finest vertex lattice")
+        return moved
+
+    def replaced(self, **changes: Any) -> Mesh:
+        """The mesh with some of its fields changed."""
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
+        return Mesh(**{**values, **changes})
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        arrays = ("vertices", "triangles", "levels")
+        return all(
+            np.array_equal(getattr(self, item.name), getattr(other, item.name))
+            if item.name in arrays
+            else getattr(self, item.name) == getattr(other, item.name)
+            for item in fields(self)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return (
+            f"Mesh({self.width} x {self.height} px, {self.n_vertices} vertices, "
+            f"{self.n_triangles} triangles, {self.n_components} colour components)"
+        )
+
+    def _check_header(self) -> None:
+        if not (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE):
+            raise ValueError(
+                f"expected a canvas of 1 to {MAX_SIDE} pixels a side, "
+                f"got {self.width} x {self.height}"
+            )
+        if not 0 <= self.subdivision <= MAX_SUBDIVISION:
+            raise ValueError(
+                f"expected a subdivision of 0 to {MAX_SUBDIVISION}, got {self.subdivision}"
+            )
+        side = max(self.width, self.height) * self.unit
+        if side > MAX_LATTICE_SIDE:
+            raise ValueError(
+                f"expected a canvas side of at most {MAX_LATTICE_SIDE} lattice units, got {side}"
+            )
+
+    def _check_arrays(self) -> None:
+        expected = (
+            ("vertices", self.vertices, self.n_vertices, 2),
+            ("triangles", self.triangles, self.n_triangles, 3),
+            ("levels", self.levels, self.n_vertices, self.n_components),
+        )
+        for name, array, rows, columns in expected:
+            if array.shape != (rows, columns):
+                raise ValueError(
+                    f"expected {name} of shape ({rows}, {columns}), got {array.shape}"
+                )
+        far = np.array([self.width, self.height]) * self.unit
+        if ((self.vertices < 0) | (self.vertices > far)).any():
+            raise ValueError("a vertex lies outside the canvas")
+        if np.unique(_position_keys(self.vertices)).size != self.n_vertices:
+            raise ValueError("two vertices share a position")
+        if ((self.triangles < 0) | (self.triangles >= self.n_vertices)).any():
+            raise ValueError("a triangle names a vertex that does not exist")
+        lowest, highest = self.lattice.level_bounds()
+        if ((self.levels < lowest) | (self.levels > highest)).any():
+            raise ValueError("a colour level lies outside its component's range")
+
+    def _check_area(self) -> None:
+        areas = self.doubled_areas()
+        if (areas <= 0).any():
+            raise ValueError("a triangle has no area or is turned the wrong way")
+        whole = 2 * self.width * self.height * self.unit**2
+        # Each area is at most 2**39: sums of 2**23 of them stay within 64 bits.
+        blocks = range(0, self.n_triangles, 1 << 23)
+        if sum(int(areas[first : first + (1 << 23)].sum()) for first in blocks) != whole:
+            raise ValueError("the triangles do not cover the canvas exactly")
+
+    def _check_edges(self) -> None:
+        start = self.triangles.astype(np.int64)
+        end = np.roll(start, -1, axis=1)
+        forward = np.sort((start * self.n_vertices + end).ravel())
+        if (forward[1:] == forward[:-1]).any():
+            raise ValueError("two triangles lie on the same side of an edge")
+        backward = (end * self.n_vertices + start).ravel()
+        place = np.minimum(np.searchsorted(forward, backward), forward.size - 1)
+        lone = forward[place] != backward
+        ends = self.vertices[np.stack([start.ravel()[lone], end.ravel()[lone]], axis=1)]
+        same = ends[:, 0] == ends[:, 1]
+        far = np.array([self.width, self.height]) * self.unit
+        on_border = same & ((ends[:, 0] == 0) | (ends[:, 0] == far))
+        if not on_border.any(axis=1).all():
+            raise ValueError("an inner edge belongs to only one triangle")
+
+
+def as_affine(
+    matrix: Matrix,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Linear part, shape (2, 2), and translation, shape (2,), of a matrix in SVG's order."""
+    values = np.asarray(matrix, dtype=np.float64)
+    if values.shape != (6,) or not np.isfinite(values).all():
+        raise ValueError(f"expected a matrix of six finite numbers, got {matrix!r}")
+    a, b, c, d, e, f = values
+    return np.array([[a, c], [b, d]]), np.array([e, f])
+
+
+def sorted_triangles(triangles: npt.NDArray[np.integer]) -> Int32Array:
+    """Triangles in canonical order: lowest vertex first, then lexicographic; shape (m, 3)."""
+    first, second, third = triangles.T
+    lowest = np.minimum(first, np.minimum(second, third))
+    rotated = np.where((lowest == second)[:, None], triangles[:, [1, 2, 0]], triangles)
+    rotated = np.where((lowest == third)[:, None], triangles[:, [2, 0, 1]], rotated)
+    # In a manifold mesh no two triangles share a directed edge: two indices decide the order.
+    first_edges = (rotated[:, 0].astype(np.int64) << 32) | rotated[:, 1]
+    result: Int32Array = rotated[np.argsort(first_edges)].astype(np.int32)
+    return result
+
+
+def _position_keys(vertices: Int32Array) -> Int64Array:
+    """One integer per position, ordered as a raster scan; shape (n,), int64."""
+    wide = vertices.astype(np.int64)
+    keys: Int64Array = (wide[:, 1] << 32) | wide[:, 0]
+    return keys
