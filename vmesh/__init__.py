@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from vmesh.encoder.pipeline import encode
     from vmesh.encoder.settings import Settings
     from vmesh.errors import FormatError, ImageError, LimitError, VmeshError
-    from vmesh.formats.registry import export
     from vmesh.formats.raster import render
+    from vmesh.formats.registry import export
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
 

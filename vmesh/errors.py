@@ -34,6 +34,7 @@ class FormatError(VmeshError, ValueError):
     def __init__(self, code: str, message: str, offset: int) -> None:
         super().__init__(f"{message} (code {code}, at byte {offset})")
         self.code = code
+        self.message = message
         self.offset = offset
 
 

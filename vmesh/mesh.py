@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import Int32Array, Int64Array, UInt8Array
+from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 
 MAX_SIDE: Final = 65_535
@@ -161,7 +161,7 @@ class Mesh:
         return self.lattice.colors_from_levels(self.levels)
 
     @property
-    def points(self) -> npt.NDArray[np.float64]:
+    def points(self) -> Float64Array:
         """Positions of the vertices in pixels, shape (n, 2), float64, exact."""
         return self.vertices / float(self.unit)
 
@@ -226,25 +226,16 @@ class Mesh:
             If the matrix is singular, or the result is too large or too small for its triangles
             to keep their areas on the finest lattice.
         """
-        linear, _ = as_affine(matrix)
-        determinant = float(np.linalg.det(linear))
-        if determinant == 0.0:
-            raise ValueError("the matrix is singular: it would flatten the mesh")
-        canvas = np.array([[0, 0], [self.width, 0], [0, self.height], [self.width, self.height]])
-        moved_canvas = canvas @ linear.T
-        low = moved_canvas.min(axis=0)
-        extent = moved_canvas.max(axis=0) - low
-        axis_aligned = not (linear[0, 1] or linear[1, 0]) or not (linear[0, 0] or linear[1, 1])
-        size = np.maximum(np.rint(extent) if axis_aligned else np.ceil(extent - 1e-9), 1)
-        if size.max() > MAX_SIDE:
-            raise ValueError(f"the moved canvas is wider or higher than {MAX_SIDE} pixels")
-        stretch = size / extent if axis_aligned else np.ones(2)
-        subdivision = min(MAX_SUBDIVISION, int(np.log2(MAX_LATTICE_SIDE / size.max())))
-        points = (self.points @ linear.T - low) * stretch
-        triangles = self.triangles if determinant > 0 else self.triangles[:, ::-1]
+        placement = Placement.of(self.width, self.height, matrix)
+        subdivision = min(
+            MAX_SUBDIVISION,
+            int(np.log2(MAX_LATTICE_SIDE / max(placement.width, placement.height))),
+        )
+        points = placement.move(self.points)
+        triangles = self.triangles if placement.keeps_turn else self.triangles[:, ::-1]
         moved = self.replaced(
-            width=int(size[0]),
-            height=int(size[1]),
+            width=placement.width,
+            height=placement.height,
             subdivision=subdivision,
             vertices=np.rint(points * (1 << subdivision)).astype(np.int32),
             triangles=triangles,
@@ -301,9 +292,7 @@ class Mesh:
         )
         for name, array, rows, columns in expected:
             if array.shape != (rows, columns):
-                raise ValueError(
-                    f"expected {name} of shape ({rows}, {columns}), got {array.shape}"
-                )
+                raise ValueError(f"expected {name} of shape ({rows}, {columns}), got {array.shape}")
         far = np.array([self.width, self.height]) * self.unit
         if ((self.vertices < 0) | (self.vertices > far)).any():
             raise ValueError("a vertex lies outside the canvas")
@@ -342,15 +331,61 @@ class Mesh:
             raise ValueError("an inner edge belongs to only one triangle")
 
 
-def as_affine(
-    matrix: Matrix,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Linear part, shape (2, 2), and translation, shape (2,), of a matrix in SVG's order."""
-    values = np.asarray(matrix, dtype=np.float64)
-    if values.shape != (6,) or not np.isfinite(values).all():
-        raise ValueError(f"expected a matrix of six finite numbers, got {matrix!r}")
-    a, b, c, d, e, f = values
-    return np.array([[a, c], [b, d]]), np.array([e, f])
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """An affine map of a canvas into the whole-pixel box around it.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the box in pixels.
+    linear : ndarray
+        Shape (2, 2), float64.
+    offset : ndarray
+        Shape (2,), float64, in pixels.
+    fills : bool
+        Whether the moved canvas fills the box.
+    """
+
+    width: int
+    height: int
+    linear: Float64Array
+    offset: Float64Array
+    fills: bool
+
+    @classmethod
+    def of(cls, width: int, height: int, matrix: Matrix) -> Placement:
+        """Where a matrix puts a canvas of `width` x `height` pixels.
+
+        A map that keeps the canvas upright is stretched by less than half a pixel so that it
+        fills its box.
+        """
+        values = np.asarray(matrix, dtype=np.float64)
+        if values.shape != (6,) or not np.isfinite(values).all():
+            raise ValueError(f"expected a matrix of six finite numbers, got {matrix!r}")
+        linear = values[:4].reshape(2, 2).T
+        if abs(np.linalg.det(linear)) < 1e-12:
+            raise ValueError("the matrix is singular: it would flatten the mesh")
+        canvas = np.array([[0, 0], [width, 0], [0, height], [width, height]]) @ linear.T
+        low, extent = canvas.min(axis=0), np.ptp(canvas, axis=0)
+        fills = not linear[[0, 1], [1, 0]].any() or not linear[[0, 1], [0, 1]].any()
+        size = np.maximum(np.rint(extent) if fills else np.ceil(extent - 1e-9), 1)
+        if size.max() > MAX_SIDE:
+            raise ValueError(f"the moved canvas is wider or higher than {MAX_SIDE} pixels")
+        stretch = size / extent if fills else np.ones(2)
+        return cls(
+            int(size[0]), int(size[1]), linear * stretch[:, None], -low * stretch, bool(fills)
+        )
+
+    @property
+    def keeps_turn(self) -> bool:
+        """Whether triangles keep their orientation."""
+        return bool(np.linalg.det(self.linear) > 0)
+
+    def move(self, points: Float64Array) -> Float64Array:
+        """Points of shape (n, 2) in the box, in pixels."""
+        moved: Float64Array = points @ self.linear.T + self.offset
+        return moved
 
 
 def sorted_triangles(triangles: npt.NDArray[np.integer]) -> Int32Array:

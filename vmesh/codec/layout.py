@@ -209,7 +209,8 @@ def read_header(chunks: list[Chunk]) -> Header:
         )
     if len(content) < _HEADER.size:
         raise FormatError("header", "chunk HEAD is too short", offset)
-    header = Header(*_HEADER.unpack_from(content), steps=tuple(content[_HEADER.size :]))
+    steps = tuple(content[_HEADER.size :])
+    header = Header(*(*_HEADER.unpack_from(content), steps))
     for complaint in _header_complaints(header, chunks):
         raise FormatError("header", complaint, offset)
     return header

@@ -36,7 +36,8 @@ def sample_colors(image: UInt8Array, vertices: Int32Array, unit: int) -> Float64
     height, width = image.shape[:2]
     x = np.minimum(vertices[:, 0] // unit, width - 1)
     y = np.minimum(vertices[:, 1] // unit, height - 1)
-    return image[y, x].astype(np.float64)
+    colors: Float64Array = image[y, x].astype(np.float64)
+    return colors
 
 
 def fit_colors(

@@ -8,11 +8,11 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import UInt8Array
+from vmesh.arrays import UInt8Array, UInt16Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
 from vmesh.encoder.salience import compute_salience
-from vmesh.encoder.sampling import sample
+from vmesh.encoder.sampling import Samples, sample
 from vmesh.encoder.settings import Settings
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import MAX_SIDE, Mesh, Metadata
@@ -20,7 +20,7 @@ from vmesh.mesh import MAX_SIDE, Mesh, Metadata
 Progress = Callable[[str], None]
 """Called with the name of each stage as it begins."""
 
-STAGES: Final = ("salience", "sampling", "triangulation", "colors", "quantization")
+STAGES: Final = ("sampling", "triangulation", "colors", "quantization")
 
 _SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
 
@@ -57,20 +57,10 @@ def encode(
     """
     chosen = Settings(**settings)
     image = as_image(array)
-    height, width = image.shape[:2]
     report = progress or _silent
 
-    report("salience")
-    salience = compute_salience(visible_planes(image), chosen.gamma)
-
     report("sampling")
-    samples = sample(
-        salience,
-        n_points=chosen.n_points(width, height),
-        sampler=chosen.sampler,
-        diffusion=chosen.diffusion,
-        seed=chosen.seed,
-    )
+    _, samples = propose(image, chosen)
     vertices = samples.vertices()
 
     report("triangulation")
@@ -86,6 +76,7 @@ def encode(
     report("quantization")
     lattice = ColorLattice.uniform(image.shape[2], chosen.color_step)
     levels = lattice.levels_from_colors(np.rint(colors))
+    height, width = image.shape[:2]
     return Mesh(
         width,
         height,
@@ -96,6 +87,33 @@ def encode(
         _SUBDIVISION,
         metadata or Metadata(),
     )
+
+
+def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples]:
+    """Salience of a picture and the points sampled from it.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    settings : Settings
+
+    Returns
+    -------
+    salience : ndarray
+        Shape (c, h, w), uint16, as :func:`compute_salience` gives it.
+    samples : Samples
+    """
+    height, width = image.shape[:2]
+    salience = compute_salience(visible_planes(image), settings.gamma)
+    samples = sample(
+        salience,
+        n_points=settings.n_points(width, height),
+        sampler=settings.sampler,
+        diffusion=settings.diffusion,
+        seed=settings.seed,
+    )
+    return salience, samples
 
 
 def as_image(array: npt.ArrayLike) -> UInt8Array:

@@ -7,16 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from vmesh.arrays import BoolArray, Int32Array, Int64Array, UInt8Array, UInt16Array
 from vmesh.encoder.salience import ONE
+from vmesh.encoder.settings import Diffusion, Sampler
 from vmesh.kernels.diffusion import diffuse
-
-Sampler = Literal["multiclass", "channels"]
-Diffusion = Literal["zhou-fang", "ostromoukhov"]
 
 COUNT_TOLERANCE: Final = 0.01
 """Relative error at which the search for a number of points stops; 0.02 is what is promised."""
@@ -24,9 +22,10 @@ COUNT_TOLERANCE: Final = 0.01
 _UNIT_SCALE: Final = 1 << 16
 _MAX_SCALE: Final = 1 << 30  # Raises the faintest non-zero salience, 1/256 level, to the top.
 _MAX_PASSES: Final = 24
-# Along the border the points of a blue-noise set of density d would be sqrt(d) apart; a little
-# less loses nothing inside the picture, since the border has neighbours on one side only.
-_BORDER_DENSITY: Final = 0.7
+# A blue-noise set of density d has about sqrt(d) points per pixel along a line. On the border
+# fewer serve better: measured at 1, 2 and 4 % over twelve photographs, shares of 1.0, 0.7 and 0.4
+# give 23.65, 23.68, 23.71 dB; 25.28, 25.29, 25.34 dB; and 27.13, 27.14, 27.18 dB.
+_BORDER_DENSITY: Final = 0.4
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,18 +155,18 @@ def sample_scaled(
 def _sample_border(salience: UInt16Array, scale: int, floor: int) -> Int32Array:
     """Corners of the canvas and points along its sides; shape (k, 2), int32, in half pixels."""
     height, width = salience.shape[1:]
-    columns, rows = 2 * np.arange(width) + 1, 2 * np.arange(height) + 1
     right, bottom = 2 * width, 2 * height
-    sides = [
-        (salience[:, 0, :], lambda t: (columns[t], np.zeros_like(columns[t]))),
-        (salience[:, -1, :], lambda t: (columns[t], np.full_like(columns[t], bottom))),
-        (salience[:, :, 0], lambda t: (np.zeros_like(rows[t]), rows[t])),
-        (salience[:, :, -1], lambda t: (np.full_like(rows[t], right), rows[t])),
-    ]
-    points = [np.array([[0, 0], [right, 0], [0, bottom], [right, bottom]], dtype=np.int64)]
-    for values, place in sides:
-        chosen = _diffuse_line(values, scale, floor)
-        points.append(np.stack(place(chosen), axis=1))
+    # The pixels along each side, where the side begins, and the step to its next pixel.
+    sides = (
+        (salience[:, 0, :], (1, 0), (2, 0)),
+        (salience[:, -1, :], (1, bottom), (2, 0)),
+        (salience[:, :, 0], (0, 1), (0, 2)),
+        (salience[:, :, -1], (right, 1), (0, 2)),
+    )
+    points = [np.array([[0, 0], [right, 0], [0, bottom], [right, bottom]])]
+    for values, start, step in sides:
+        chosen = np.flatnonzero(_diffuse_line(values, scale, floor))
+        points.append(np.array(start) + chosen[:, None] * np.array(step))
     return np.concatenate(points).astype(np.int32)
 
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
 from vmesh.color_lattice import MAX_STEP
-from vmesh.encoder.sampling import Diffusion, Sampler
 
 Method = Literal["blue-noise"]
+Sampler = Literal["multiclass", "channels"]
+Diffusion = Literal["zhou-fang", "ostromoukhov"]
 ColorMode = Literal["fitted", "sampled"]
 
 _CHOICES: Final = {

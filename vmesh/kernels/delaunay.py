@@ -109,9 +109,7 @@ def flip(origin: Int32Array, twin: Int32Array, e: int) -> None:
     is (d, c, a) with the diagonal as the half-edge from a to d, and the other is (a, b, d).
     """
     f = twin[e]
-    e_next = e - 2 if e % 3 == 2 else e + 1
     e_prev = e + 2 if e % 3 == 0 else e - 1
-    f_next = f - 2 if f % 3 == 2 else f + 1
     f_prev = f + 2 if f % 3 == 0 else f - 1
     a = origin[e_prev]
     d = origin[f_prev]

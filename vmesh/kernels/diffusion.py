@@ -80,7 +80,8 @@ def diffuse(
         for _ in range(width):
             total = 0
             for i in range(n_classes):
-                values[i] = min(one, ((np.int64(salience[i, y, x - 1]) * scale) >> 16) + floor)
+                wanted = ((np.int64(salience[i, y, x - 1]) * scale) >> 16) + floor
+                values[i] = min(np.int64(one), wanted)
                 total += values[i]
             if total > one:  # A pixel holds one sample: the classes share it in proportion.
                 for i in range(n_classes):

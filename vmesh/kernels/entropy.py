@@ -64,7 +64,7 @@ def write_byte(coder: Int64Array, data: UInt8Array, byte: int) -> None:
 
 
 @kernel
-def read_byte(coder: Int64Array, data: UInt8Array) -> int:
+def read_byte(coder: Int64Array, data: UInt8Array) -> np.int64:
     """Next byte of the payload; zeros beyond its end."""
     position = coder[POSITION]
     coder[POSITION] = position + 1
@@ -111,7 +111,7 @@ def finish(coder: Int64Array, data: UInt8Array) -> int:
             break
     for _ in range(5):
         shift_low(coder, data)
-    length = min(coder[POSITION], data.shape[0])
+    length: int = min(coder[POSITION], data.shape[0])
     while length > 0 and data[length - 1] == 0:
         length -= 1
     return length
@@ -422,7 +422,7 @@ def code_levels(
 
 
 @kernel
-def bit_length(number: int) -> int:
+def bit_length(number: int | np.int64) -> int:
     """Number of bits of a number of 0 or more."""
     length = 0
     while number >> length > 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from numba import njit
 from numba.core import event
@@ -23,22 +23,21 @@ def kernel(function: Function) -> Function:
     process.
     """
     try:
-        compiled: Function = njit(cache=True, nogil=True)(function)
+        return cast("Function", njit(cache=True, nogil=True)(function))
     except RuntimeError:  # Numba found no folder that it may write its cache to.
-        compiled = njit(nogil=True)(function)
-    return compiled
+        return cast("Function", njit(nogil=True)(function))
 
 
 class _FirstCompilation(event.Listener):
-    """Calls `notify` when the first kernel is about to be compiled."""
+    """Calls `announce` when the first kernel is about to be compiled."""
 
-    def __init__(self, notify: Callable[[], None]) -> None:
-        self.notify: Callable[[], None] | None = notify
+    def __init__(self, announce: Callable[[], None]) -> None:
+        self.announce: Callable[[], None] | None = announce
 
     def on_start(self, event: Event) -> None:
-        if self.notify is not None:
-            notify, self.notify = self.notify, None
-            notify()
+        if self.announce is not None:
+            announce, self.announce = self.announce, None
+            announce()
 
     def on_end(self, event: Event) -> None:
         pass

@@ -121,8 +121,8 @@ def spans(
 
 @kernel
 def gradient(
-    c0: int, c1: int, c2: int, x0: int, y0: int, x1: int, y1: int, x2: int, y2: int
-) -> tuple[int, int, int]:
+    c0: np.int64, c1: np.int64, c2: np.int64, x0: int, y0: int, x1: int, y1: int, x2: int, y2: int
+) -> tuple[np.int64, np.int64, np.int64]:
     """The affine function that is c0, c1, c2 at three corners, as numerators over det.
 
     The corners 1 and 2 are given relative to corner 0. Returns the value at the centre of pixel
@@ -264,6 +264,32 @@ def cover(vertices: Int64Array, triangles: Int32Array, counts: UInt8Array) -> No
         for y in range(first, last):
             for x in range(rows[y, 0], rows[y, 1]):
                 counts[y, x] += np.uint8(1)
+
+
+@kernel
+def sum_pixels(
+    vertices: Int64Array, triangles: Int32Array, raster: UInt8Array, sums: Int64Array
+) -> None:
+    """Add up the pixels that each triangle covers.
+
+    Parameters
+    ----------
+    vertices, triangles : ndarray
+        As for :func:`fill`; the turn of a triangle does not matter.
+    raster : ndarray
+        Shape (h, w, c), uint8.
+    sums : ndarray
+        Shape (m, c + 1), int64, added to: the sum of each component, then the number of pixels.
+    """
+    height, width, n_components = raster.shape
+    rows = np.empty((height, 2), np.int64)
+    for t in range(triangles.shape[0]):
+        first, last = spans(vertices, triangles[t], width, height, rows)
+        for y in range(first, last):
+            for x in range(rows[y, 0], rows[y, 1]):
+                for z in range(n_components):
+                    sums[t, z] += np.int64(raster[y, x, z])
+            sums[t, n_components] += max(rows[y, 1] - rows[y, 0], 0)
 
 
 @kernel

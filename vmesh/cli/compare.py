@@ -1,0 +1,56 @@
+"""``vmesh compare``: how close two pictures or meshes are."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from vmesh.cli.options import json_option, limit_options, take_limits
+from vmesh.cli.streams import read_mesh_or_photograph
+
+if TYPE_CHECKING:
+    from vmesh.arrays import UInt8Array
+    from vmesh.limits import Limits
+
+
+@click.command("compare")
+@click.argument("first", metavar="A")
+@click.argument("second", metavar="B")
+@limit_options
+@json_option
+def command(first: str, second: str, as_json: bool, **options: Any) -> None:
+    """Print PSNR over RGB and over luma, and SSIM, of two pictures or .vmesh files.
+
+    B is brought to the size of A: a mesh by drawing it at that size, a picture by bicubic
+    resampling. What is transparent counts as white.
+    """
+    limits = take_limits(options)
+    from vmesh.metrics import compare
+
+    reference = _pixels(first, limits, None)
+    other = _pixels(second, limits, (reference.shape[1], reference.shape[0]))
+    figures = compare(reference, other)
+    if as_json:
+        # JSON has no infinity: equal pictures have no PSNR.
+        finite = {key: x if x != float("inf") else None for key, x in figures.items()}
+        click.echo(json.dumps(finite))
+    else:
+        click.echo(f"PSNR RGB  {figures['psnr_rgb']:.3f} dB")
+        click.echo(f"PSNR Y    {figures['psnr_y']:.3f} dB")
+        click.echo(f"SSIM      {figures['ssim']:.5f}")
+
+
+def _pixels(path: str, limits: Limits, size: tuple[int, int] | None) -> UInt8Array:
+    """Pixels of a picture or mesh, shape (h, w, 3), at a size or at its own."""
+    from vmesh.formats.picture import flatten, resize
+    from vmesh.formats.raster import render
+    from vmesh.mesh import Mesh
+
+    given = read_mesh_or_photograph(path, limits)
+    if isinstance(given, Mesh):
+        width, height = size or (given.width, given.height)
+        return flatten(render(given, limits=limits, width=width, height=height))
+    pixels = flatten(given.array)
+    return pixels if size is None else resize(pixels, size)

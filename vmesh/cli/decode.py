@@ -1,0 +1,70 @@
+"""``vmesh decode``: a .vmesh file -> pixels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from vmesh.cli.options import limit_options, quiet_option, take_limits
+from vmesh.cli.progress import show_progress
+from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
+from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of, write_mesh
+
+
+class MatrixType(click.ParamType[tuple[float, ...]]):
+    """Six numbers with commas between them."""
+
+    name = "a,b,c,d,e,f"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """The numbers of a text."""
+        try:
+            numbers = tuple(float(part) for part in value.split(","))
+        except ValueError:
+            numbers = ()
+        if len(numbers) != 6:
+            self.fail(f"expected six numbers such as 1,0,0,1,0,0, got {value!r}", param, ctx)
+        return numbers
+
+
+@click.command("decode")
+@click.argument("source", metavar="INPUT.vmesh")
+@click.argument("target", metavar="OUTPUT")
+@click.option("--scale", type=click.FloatRange(0, min_open=True), help="Pixels per canvas pixel.")
+@click.option("--width", type=click.IntRange(1), help="Width of the result in pixels.")
+@click.option("--height", type=click.IntRange(1), help="Height of the result in pixels.")
+@click.option(
+    "--transform",
+    type=MatrixType(),
+    help="Affine map in SVG's order: x' = a x + c y + e, y' = b x + d y + f.",
+)
+@click.option(
+    "--supersample",
+    type=click.IntRange(1, 16),
+    default=1,
+    show_default=True,
+    help="Samples per pixel and direction; for small results.",
+)
+@limit_options
+@quiet_option
+def command(source: str, target: str, quiet: bool, **options: Any) -> None:
+    """Turn a .vmesh file into pixels: PNG, JPEG, WebP or TIFF, by the name of OUTPUT.
+
+    The size is that of the photograph, or --scale, --width, --height say it; one of the last two
+    keeps the proportions. Standard output gets a PNG.
+    """
+    limits = take_limits(options)
+    check_suffix(target, RASTER_SUFFIXES)
+    if options["scale"] and (options["width"] or options["height"]):
+        raise click.UsageError("expected --scale or a size, not both")
+    wanted = FORMATS[".png"] if target == STANDARD else format_of(target)
+    with show_progress("decoding", 2, quiet=quiet) as report:
+        report("reading")
+        mesh = read_mesh(source, limits)
+        report("drawing")
+        write_output(
+            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
+        )

@@ -1,0 +1,58 @@
+"""``vmesh encode``: a photograph -> a .vmesh file."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import asdict
+from typing import Any
+
+import click
+
+from vmesh.cli.options import (
+    encoder_options,
+    json_option,
+    limit_options,
+    quiet_option,
+    take_limits,
+    take_settings,
+)
+from vmesh.cli.progress import show_progress
+from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
+
+
+@click.command("encode")
+@click.argument("source", metavar="INPUT")
+@click.argument("target", metavar="OUTPUT.vmesh")
+@encoder_options
+@limit_options
+@json_option
+@quiet_option
+def command(source: str, target: str, as_json: bool, quiet: bool, **options: Any) -> None:
+    """Turn a photograph into a .vmesh file."""
+    settings, limits = take_settings(options), take_limits(options)
+    check_suffix(target, (".vmesh",))
+    if as_json and target == STANDARD:
+        raise click.UsageError("--json and the file cannot both go to standard output")
+    from vmesh.codec.writer import dumps
+    from vmesh.encoder.pipeline import STAGES, encode
+
+    started = time.perf_counter()
+    with show_progress("encoding", len(STAGES) + 2, quiet=quiet) as report:
+        report("reading")
+        picture = read_photograph(source, limits)
+        mesh = encode(picture.array, metadata=picture.metadata, progress=report, **asdict(settings))
+        report("writing")
+        data = dumps(mesh)
+        write_output(target, lambda stream: stream.write(data))
+    if as_json:
+        figures = {
+            "width": mesh.width,
+            "height": mesh.height,
+            "vertices": mesh.n_vertices,
+            "triangles": mesh.n_triangles,
+            "bytes": len(data),
+            "bits_per_vertex": round(8 * len(data) / mesh.n_vertices, 3),
+            "seconds": round(time.perf_counter() - started, 3),
+        }
+        click.echo(json.dumps(figures))

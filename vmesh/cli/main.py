@@ -1,0 +1,82 @@
+"""The command ``vmesh``."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from typing import Final
+
+import click
+
+from vmesh import __version__
+from vmesh.errors import VmeshError
+
+# Command -> the module of that name and the line in the overview; modules are imported when used.
+COMMANDS: Final = {
+    "encode": ("encode", "Turn a photograph into a .vmesh file."),
+    "decode": ("decode", "Turn a .vmesh file into pixels at any scale."),
+    "to-svg": ("to_svg", "Turn a .vmesh file or a photograph into SVG."),
+    "to-pdf": ("to_pdf", "Turn a .vmesh file or a photograph into PDF."),
+    "info": ("info", "Say what is in a .vmesh file."),
+    "inspect": ("inspect", "Draw the stages of an encoding."),
+    "compare": ("compare", "Measure how close two pictures or meshes are."),
+}
+
+
+class LazyGroup(click.Group):
+    """A group that imports a command's module when the command is run."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all commands, in the order of a user's work."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of a name."""
+        if cmd_name not in COMMANDS:
+            return None
+        command = import_module(f"vmesh.cli.{COMMANDS[cmd_name][0]}").command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the overview from the table alone."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="vmesh")
+def cli() -> None:
+    """Photographs as triangle meshes: encode, store, and turn into pixels, SVG and PDF.
+
+    A file named - is standard input or output.
+    """
+
+
+def main() -> None:
+    """Run the command line: exit 0 when done, 1 on a failure told in one line, 2 on wrong usage."""
+    try:
+        cli.main(standalone_mode=False)
+    except click.exceptions.Exit as stop:
+        sys.exit(stop.exit_code)
+    except click.exceptions.Abort:
+        sys.exit(130)
+    except click.UsageError as error:
+        error.show()
+        sys.exit(2)
+    except BrokenPipeError:
+        # The reader of our output has gone: nobody is left to tell.
+        sys.stderr.close()
+        sys.exit(1)
+    except (VmeshError, OSError, ValueError, MemoryError) as error:
+        click.echo(f"vmesh: {describe(error)}", err=True)
+        sys.exit(1)
+
+
+def describe(error: BaseException) -> str:
+    """What went wrong, in one line."""
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,107 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any, TypeVar, get_args
+
+import click
+
+from vmesh.color_lattice import MAX_STEP
+from vmesh.encoder.settings import ColorMode, Diffusion, Method, Sampler, Settings
+from vmesh.limits import DEFAULT_LIMITS, Limits
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+_ENCODER_OPTIONS = (
+    click.option(
+        "--method",
+        type=click.Choice(get_args(Method)),
+        default="blue-noise",
+        show_default=True,
+        help="How vertices are found.",
+    ),
+    click.option(
+        "--gamma",
+        type=click.FloatRange(0, 10, min_open=True),
+        default=1.0,
+        show_default=True,
+        help="Exponent of the salience; a smaller one gives more points.",
+    ),
+    click.option(
+        "--sampler",
+        type=click.Choice(get_args(Sampler)),
+        default="multiclass",
+        show_default=True,
+        help="Colour planes sampled together or each for itself.",
+    ),
+    click.option(
+        "--diffusion",
+        type=click.Choice(get_args(Diffusion)),
+        default="zhou-fang",
+        show_default=True,
+        help="Coefficients of the error diffusion.",
+    ),
+    click.option(
+        "--colors",
+        type=click.Choice(get_args(ColorMode)),
+        default="fitted",
+        show_default=True,
+        help="Vertex colours by least squares, or those of single pixels.",
+    ),
+    click.option("--vertices", type=click.IntRange(4), help="Number of vertices, met within 2 %."),
+    click.option(
+        "--density",
+        type=click.FloatRange(0, 1, min_open=True),
+        help="Vertices per pixel instead of their number, such as 0.02.",
+    ),
+    click.option(
+        "--color-step",
+        type=click.IntRange(1, MAX_STEP),
+        default=8,
+        show_default=True,
+        help="Rounding of the vertex colours; 1 for none.",
+    ),
+    click.option(
+        "--seed", type=click.IntRange(0), default=0, show_default=True, help="Random seed."
+    ),
+)
+
+
+def encoder_options(command: Command) -> Command:
+    """Give a command the settings of the encoder."""
+    for option in reversed(_ENCODER_OPTIONS):
+        command = option(command)
+    return command
+
+
+def take_settings(options: dict[str, Any]) -> Settings:
+    """Encoder settings of a command's options, which lose them."""
+    chosen = {item.name: options.pop(item.name) for item in fields(Settings)}
+    try:
+        return Settings(**chosen)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+
+
+def limit_options(command: Command) -> Command:
+    """Give a command the limits on what it accepts."""
+    for name, default, text in (
+        ("--max-vertices", DEFAULT_LIMITS.max_vertices, "Most vertices of a mesh."),
+        ("--max-pixels", DEFAULT_LIMITS.max_pixels, "Most pixels of a picture."),
+    ):
+        option = click.option(
+            name, type=click.IntRange(1), default=default, show_default=True, help=text
+        )
+        command = option(command)
+    return command
+
+
+def take_limits(options: dict[str, Any]) -> Limits:
+    """Limits of a command's options, which lose them."""
+    return Limits(max_pixels=options.pop("max_pixels"), max_vertices=options.pop("max_vertices"))
+
+
+quiet_option = click.option("--quiet", is_flag=True, help="No progress on a terminal.")
+json_option = click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")

@@ -1,0 +1,88 @@
+"""Where commands read from and write to: files, standard input and standard output."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+import click
+
+from vmesh.codec.layout import is_vmesh
+from vmesh.errors import FormatError, ImageError, LimitError
+from vmesh.files import atomic_output
+
+if TYPE_CHECKING:
+    from vmesh.formats.picture import Picture
+    from vmesh.limits import Limits
+    from vmesh.mesh import Mesh
+
+STANDARD = "-"
+
+
+def read_input(path: str) -> bytes:
+    """Bytes of a file or of standard input."""
+    return sys.stdin.buffer.read() if path == STANDARD else Path(path).read_bytes()
+
+
+def write_output(path: str, write: Callable[[BinaryIO], object]) -> None:
+    """Let `write` fill a file, which takes its name when it is whole, or standard output."""
+    if path == STANDARD:
+        buffer = io.BytesIO()
+        write(buffer)
+        sys.stdout.buffer.write(buffer.getvalue())
+        sys.stdout.buffer.flush()
+        return
+    with atomic_output(path) as stream:
+        write(stream)
+
+
+def check_suffix(path: str, suffixes: tuple[str, ...]) -> None:
+    """Refuse an output whose name does not end in one of `suffixes`."""
+    if path != STANDARD and Path(path).suffix.lower() not in suffixes:
+        raise click.UsageError(f"{path}: expected a name that ends in {', '.join(suffixes)}")
+
+
+def read_mesh(path: str, limits: Limits) -> Mesh:
+    """Mesh of a .vmesh file."""
+    return _mesh_of(read_input(path), path, limits)
+
+
+def read_photograph(path: str, limits: Limits) -> Picture:
+    """The photograph in an image file."""
+    data = read_input(path)
+    if is_vmesh(data):
+        raise ImageError(f"{path}: this is a .vmesh file, a photograph is needed")
+    return _photograph_of(data, path, limits)
+
+
+def read_mesh_or_photograph(path: str, limits: Limits) -> Mesh | Picture:
+    """What a file holds, by its content; a name that ends in .vmesh promises a mesh."""
+    data = read_input(path)
+    if is_vmesh(data) or Path(path).suffix.lower() == ".vmesh":
+        return _mesh_of(data, path, limits)
+    return _photograph_of(data, path, limits)
+
+
+def _mesh_of(data: bytes, path: str, limits: Limits) -> Mesh:
+    from vmesh.codec.reader import loads
+
+    try:
+        return loads(data, limits=limits)
+    except FormatError as error:
+        raise FormatError(error.code, f"{path}: {error.message}", error.offset) from None
+    except LimitError as error:
+        raise LimitError(f"{path}: {error}") from None
+
+
+def _photograph_of(data: bytes, path: str, limits: Limits) -> Picture:
+    from vmesh.formats.picture import read_picture
+
+    if not data:
+        raise ImageError(f"{path}: the file is empty")
+    try:
+        return read_picture(io.BytesIO(data), limits=limits)
+    except (ImageError, LimitError) as error:
+        raise type(error)(f"{path}: {error}") from None

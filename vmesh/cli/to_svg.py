@@ -1,0 +1,42 @@
+"""``vmesh to-svg``: a .vmesh file or a photograph -> SVG."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from vmesh.cli.options import (
+    encoder_options,
+    limit_options,
+    quiet_option,
+    take_limits,
+    take_settings,
+)
+from vmesh.cli.streams import STANDARD, check_suffix
+from vmesh.cli.vector import convert
+from vmesh.formats.registry import FORMATS, format_of
+
+
+@click.command("to-svg")
+@click.argument("source", metavar="INPUT")
+@click.argument("target", metavar="OUTPUT")
+@click.option(
+    "--mode",
+    type=click.Choice(("gradient", "flat")),
+    default="gradient",
+    show_default=True,
+    help="What fills a triangle.",
+)
+@encoder_options
+@limit_options
+@quiet_option
+def command(source: str, target: str, mode: str, quiet: bool, **options: Any) -> None:
+    """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
+
+    The options of the encoder apply to photographs.
+    """
+    settings, limits = take_settings(options), take_limits(options)
+    check_suffix(target, (".svg", ".svgz"))
+    wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
+    convert(source, target, wanted, settings, limits, quiet=quiet, mode=mode)

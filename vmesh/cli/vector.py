@@ -1,0 +1,37 @@
+"""What ``vmesh to-svg`` and ``vmesh to-pdf`` have in common."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from vmesh.cli.progress import show_progress
+from vmesh.cli.streams import read_mesh_or_photograph, write_output
+from vmesh.encoder.settings import Settings
+from vmesh.formats.registry import Format, write_mesh
+from vmesh.limits import Limits
+
+
+def convert(
+    source: str,
+    target: str,
+    wanted: Format,
+    settings: Settings,
+    limits: Limits,
+    *,
+    quiet: bool,
+    **options: Any,
+) -> None:
+    """Write a .vmesh file, or a photograph encoded on the way, in a vector format."""
+    from vmesh.encoder.pipeline import STAGES, encode
+    from vmesh.mesh import Mesh
+
+    with show_progress("converting", len(STAGES) + 2, quiet=quiet) as report:
+        report("reading")
+        given = read_mesh_or_photograph(source, limits)
+        if isinstance(given, Mesh):
+            mesh = given
+        else:
+            mesh = encode(given.array, metadata=given.metadata, progress=report, **asdict(settings))
+        report("writing")
+        write_output(target, lambda stream: write_mesh(mesh, stream, wanted, **options))

@@ -1,0 +1,1 @@
+"""Mesh -> everything else, and pictures -> arrays. ``registry`` holds the table of formats."""

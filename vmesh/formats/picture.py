@@ -1,0 +1,124 @@
+"""Image files -> arrays, through Pillow."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import BinaryIO, Final
+
+import numpy as np
+from PIL import Image, ImageOps
+
+from vmesh.arrays import UInt8Array
+from vmesh.errors import ImageError, LimitError
+from vmesh.formats.raster import fits_icc
+from vmesh.limits import DEFAULT_LIMITS, Limits
+from vmesh.mesh import MAX_SIDE, Metadata
+
+_SIXTEEN_BIT: Final = ("I;16", "I;16L", "I;16B", "I;16N", "I")
+_WITH_ALPHA: Final = ("RGBA", "LA", "La", "PA", "RGBa")
+_OPAQUE: Final = ("RGB", "CMYK", "YCbCr", "LAB", "HSV", "RGBX", "P")
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A photograph as the encoder takes it.
+
+    Parameters
+    ----------
+    array : ndarray
+        uint8, shape (h, w), (h, w, 3) or (h, w, 4), upright.
+    metadata : Metadata
+        ICC profile, EXIF without its orientation, XMP.
+    """
+
+    array: UInt8Array
+    metadata: Metadata
+
+
+def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Picture:
+    """The photograph in an open file.
+
+    Its EXIF orientation is applied, alpha and palettes are resolved, 16-bit samples are rounded
+    to 8, and of an animation the first frame is taken.
+
+    Raises
+    ------
+    ImageError
+        If the file is not an image that Pillow can read to its end.
+    LimitError
+        If it has more pixels than `limits` allow.
+    """
+    with warnings.catch_warnings():
+        # The limits below take the place of Pillow's warning about large pictures.
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        warnings.simplefilter("ignore", UserWarning)
+        image = _open(stream)
+        limits.check_pixels(*image.size)
+        if max(image.size) > MAX_SIDE:
+            raise ImageError(f"a picture side of {max(image.size)} pixels is over {MAX_SIDE}")
+        try:
+            image.load()
+            upright = ImageOps.exif_transpose(image)
+            array = _array_of(upright)
+            return Picture(array, _metadata_of(upright, array))
+        except (OSError, ValueError, SyntaxError, EOFError, IndexError, TypeError) as error:
+            raise ImageError(f"the image is damaged: {error}") from None
+
+
+def _open(stream: BinaryIO) -> Image.Image:
+    """The image with its header read."""
+    try:
+        return Image.open(stream)
+    except Image.DecompressionBombError as error:
+        raise LimitError(str(error)) from None
+    except Exception:
+        # Plug-ins raise errors of many kinds on damaged headers; none of them says more.
+        raise ImageError("not an image in a format that can be read") from None
+
+
+def _array_of(image: Image.Image) -> UInt8Array:
+    """Pixels of an image of any mode, uint8, shape (h, w), (h, w, 3) or (h, w, 4)."""
+    if image.mode in _SIXTEEN_BIT:
+        wide = np.clip(np.asarray(image).astype(np.int64), 0, 65535)
+        return ((wide * 255 + 32767) // 65535).astype(np.uint8)
+    if image.mode in _WITH_ALPHA or "transparency" in image.info:
+        return np.asarray(image.convert("RGBA"))
+    if image.mode in ("1", "L"):
+        return np.asarray(image.convert("L"))
+    if image.mode in _OPAQUE:
+        return np.asarray(image.convert("RGB"))
+    raise ValueError(f"pixels of type {image.mode} are not supported")
+
+
+def _metadata_of(image: Image.Image, array: UInt8Array) -> Metadata:
+    """What travels along; an ICC profile only if it fits the array's components."""
+    profile = image.info.get("icc_profile") or b""
+    xmp = image.info.get("xmp") or b""
+    exif = image.getexif()
+    n_components = 1 if array.ndim == 2 else array.shape[2]
+    return Metadata(
+        icc=profile if fits_icc(profile, n_components) else b"",
+        exif=exif.tobytes() if len(exif) else b"",
+        xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
+    )
+
+
+def flatten(array: UInt8Array) -> UInt8Array:
+    """A picture as RGB on white, shape (h, w, 3), uint8.
+
+    `array` has shape (h, w), (h, w, 3) or (h, w, 4).
+    """
+    if array.ndim == 2:
+        return np.repeat(array[:, :, None], 3, axis=2)
+    if array.shape[2] == 3:
+        return array
+    alpha = array[:, :, 3:].astype(np.int64)
+    return ((array[:, :, :3] * alpha + 255 * (255 - alpha) + 127) // 255).astype(np.uint8)
+
+
+def resize(array: UInt8Array, size: tuple[int, int]) -> UInt8Array:
+    """A picture of shape (h, w, 3) at another width and height, by bicubic resampling."""
+    if (array.shape[1], array.shape[0]) == size:
+        return array
+    return np.asarray(Image.fromarray(array).resize(size, Image.Resampling.BICUBIC))

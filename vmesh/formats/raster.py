@@ -1,0 +1,225 @@
+"""Mesh -> pixels, and pixels -> image files."""
+
+from __future__ import annotations
+
+from typing import BinaryIO, Final
+
+import numpy as np
+from PIL import Image
+
+from vmesh.arrays import Int32Array, Int64Array, UInt8Array
+from vmesh.kernels.scanline import SUBPIXEL, fill
+from vmesh.limits import DEFAULT_LIMITS, Limits
+from vmesh.mesh import MAX_SIDE, Matrix, Mesh, Metadata, Placement
+
+MAX_SUPERSAMPLE: Final = 16
+
+_BAND_PIXELS: Final = 1 << 22  # drawn at a time when supersampling
+_WHITE: Final = (255, 255, 255)
+_ICC_SPACES: Final = {1: b"GRAY", 3: b"RGB ", 4: b"RGB "}
+
+
+def render(
+    mesh: Mesh,
+    *,
+    scale: float | None = None,
+    width: int | None = None,
+    height: int | None = None,
+    transform: Matrix | None = None,
+    supersample: int = 1,
+    limits: Limits = DEFAULT_LIMITS,
+) -> UInt8Array:
+    """Pixels of a mesh.
+
+    Every pixel takes the colour at its centre; the centre on an edge belongs to the triangle on
+    the right of the edge or below it. At the mesh's own size the result is that of exact integer
+    arithmetic; at any other, vertices are first rounded to 1/256 of a pixel of the result.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    scale : float, optional
+        Pixels of the result per pixel of the canvas.
+    width, height : int, optional
+        Size of the result; one of them alone keeps the proportions. Not together with `scale`.
+    transform : sequence of six float, optional
+        Affine map ``(a, b, c, d, e, f)`` in SVG's order, applied before the scaling; the result
+        holds the whole moved canvas.
+    supersample : int
+        Each pixel is the mean of supersample x supersample centres, 1 to 16: for results that
+        are smaller than the canvas.
+    limits : Limits
+        What may be asked for.
+
+    Returns
+    -------
+    ndarray
+        uint8, shape (h, w) for grey, (h, w, 3) for RGB, (h, w, 4) for RGBA. RGBA too, transparent
+        outside of the mesh, if the transform tilts the canvas.
+
+    Raises
+    ------
+    LimitError
+        If the raster or the work is more than `limits` allow.
+    """
+    placement = Placement.of(mesh.width, mesh.height, transform or (1, 0, 0, 1, 0, 0))
+    columns, rows = _raster_size(placement.width, placement.height, scale, width, height)
+    if not 1 <= supersample <= MAX_SUPERSAMPLE:
+        raise ValueError(f"expected a supersampling of 1 to {MAX_SUPERSAMPLE}, got {supersample}")
+    limits.check_pixels(columns, rows)
+    drawn = (columns * supersample, rows * supersample)
+    if max(drawn) > MAX_SIDE:
+        raise ValueError(f"a raster side of {max(drawn)} samples is more than {MAX_SIDE}")
+
+    if transform is None:
+        positions = _scaled_positions(mesh, drawn)
+    else:
+        factor = np.array(drawn) / (placement.width, placement.height) * SUBPIXEL
+        positions = np.rint(placement.move(mesh.points) * factor).astype(np.int64)
+    triangles = mesh.triangles if placement.keeps_turn else mesh.triangles[:, ::-1].copy()
+    _check_work(positions, triangles, drawn, limits)
+
+    colors = mesh.colors
+    if not (placement.fills and mesh.covers_canvas):
+        colors = with_alpha(colors)
+    if supersample == 1:
+        raster = np.zeros((rows, columns, colors.shape[1]), dtype=np.uint8)
+        fill(positions, triangles, colors, raster)
+    else:
+        raster = _supersampled(positions, triangles, colors, (columns, rows), supersample)
+    return raster[:, :, 0] if colors.shape[1] == 1 else raster
+
+
+def write_raster(
+    raster: UInt8Array,
+    stream: BinaryIO,
+    format_name: str,
+    *,
+    metadata: Metadata | None = None,
+    quality: int = 92,
+) -> None:
+    """Write an image file through Pillow.
+
+    Parameters
+    ----------
+    raster : ndarray
+        uint8, shape (h, w), (h, w, 3) or (h, w, 4).
+    stream : binary file
+    format_name : {"PNG", "JPEG", "WEBP", "TIFF"}
+        JPEG has no alpha: the picture is laid on white.
+    metadata : Metadata, optional
+        ICC profile (where it fits the picture's components) and EXIF are written along.
+    quality : int
+        For JPEG and WebP, 1 to 100.
+    """
+    image = Image.fromarray(raster)
+    if format_name == "JPEG" and image.mode == "RGBA":
+        opaque = Image.new("RGB", image.size, _WHITE)
+        opaque.paste(image, mask=image.getchannel("A"))
+        image = opaque
+    options: dict[str, object] = {}
+    if format_name in ("JPEG", "WEBP"):
+        options["quality"] = quality
+    if metadata is not None:
+        if metadata.exif:
+            options["exif"] = metadata.exif
+        if fits_icc(metadata.icc, len(image.getbands())):
+            options["icc_profile"] = metadata.icc
+    image.save(stream, format_name, **options)
+
+
+def fits_icc(profile: bytes, n_components: int) -> bool:
+    """Whether an ICC profile describes pictures of this many components."""
+    return profile[16:20] == _ICC_SPACES[n_components]
+
+
+def _raster_size(
+    canvas_width: int,
+    canvas_height: int,
+    scale: float | None,
+    width: int | None,
+    height: int | None,
+) -> tuple[int, int]:
+    """Columns and rows of the result."""
+    if scale is not None and (width is not None or height is not None):
+        raise ValueError("expected a scale or a size, not both")
+    if width is not None and height is not None:
+        columns, rows = float(width), float(height)
+    elif width is not None:
+        columns, rows = float(width), width * canvas_height / canvas_width
+    elif height is not None:
+        columns, rows = height * canvas_width / canvas_height, float(height)
+    else:
+        factor = 1.0 if scale is None else float(scale)
+        if not 0.0 < factor < float("inf"):
+            raise ValueError(f"expected a scale above 0, got {scale}")
+        columns, rows = canvas_width * factor, canvas_height * factor
+    if columns <= 0 or rows <= 0:
+        raise ValueError(f"expected a raster of at least one pixel, got {columns} x {rows}")
+    if max(columns, rows) > MAX_SIDE:
+        raise ValueError(f"a raster side of {max(columns, rows):.0f} pixels is over {MAX_SIDE}")
+    return max(1, round(columns)), max(1, round(rows))
+
+
+def _scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
+    """Vertices in 1/256 pixel of a raster that shows the whole canvas, shape (n, 2), int64."""
+    canvas = np.array([mesh.width, mesh.height], dtype=np.int64) * mesh.unit
+    numerators = 2 * mesh.vertices.astype(np.int64) * (np.array(size) * SUBPIXEL) + canvas
+    positions: Int64Array = numerators // (2 * canvas)
+    return positions
+
+
+def _check_work(
+    positions: Int64Array,
+    triangles: Int32Array,
+    size: tuple[int, int],
+    limits: Limits,
+) -> None:
+    heights = np.clip(positions[:, 1] // SUBPIXEL, 0, size[1])[triangles]
+    limits.check_work(int(np.ptp(heights, axis=1).sum()) + len(triangles) + size[0] * size[1])
+
+
+def with_alpha(colors: UInt8Array) -> UInt8Array:
+    """RGBA of grey, RGB or RGBA colours."""
+    if colors.shape[1] == 4:
+        return colors
+    opaque = np.full((len(colors), 1), 255, dtype=np.uint8)
+    rgb = np.repeat(colors, 3, axis=1) if colors.shape[1] == 1 else colors
+    return np.concatenate([rgb, opaque], axis=1)
+
+
+def _supersampled(
+    positions: Int64Array,
+    triangles: Int32Array,
+    colors: UInt8Array,
+    size: tuple[int, int],
+    factor: int,
+) -> UInt8Array:
+    """Means over factor x factor samples, drawn in bands of rows; shape (h, w, c)."""
+    columns, rows = size
+    n_components = colors.shape[1]
+    band_rows = max(1, _BAND_PIXELS // (columns * factor * factor))
+    result = np.empty((rows, columns, n_components), dtype=np.uint8)
+    for first in range(0, rows, band_rows):
+        last = min(first + band_rows, rows)
+        band = np.zeros(((last - first) * factor, columns * factor, n_components), dtype=np.uint8)
+        shifted = positions - np.array([0, first * factor * SUBPIXEL])
+        fill(shifted, triangles, colors, band)
+        blocks = band.reshape(last - first, factor, columns, factor, n_components)
+        result[first:last] = _block_means(blocks)
+    return result
+
+
+def _block_means(blocks: UInt8Array) -> UInt8Array:
+    """Means over axes 1 and 3, rounded; colours count in proportion to their alpha."""
+    count = blocks.shape[1] * blocks.shape[3]
+    if blocks.shape[4] != 4:
+        sums = blocks.sum(axis=(1, 3), dtype=np.int64)
+        rounded: UInt8Array = ((2 * sums + count) // (2 * count)).astype(np.uint8)
+        return rounded
+    alpha = blocks[..., 3:].astype(np.int64)
+    covered = alpha.sum(axis=(1, 3))
+    sums = (blocks[..., :3] * alpha).sum(axis=(1, 3))
+    colors = (2 * sums + covered) // np.maximum(2 * covered, 1)
+    means = (2 * covered + count) // (2 * count)
+    return np.concatenate([colors, means], axis=2).astype(np.uint8)

@@ -1,0 +1,90 @@
+"""The table of output formats, by the ending of a file's name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+from vmesh.files import atomic_output
+from vmesh.mesh import Mesh
+
+Writer = Callable[..., None]
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """An output format: its writer, and Pillow's name for it where it is made of pixels."""
+
+    module: str
+    function: str
+    raster_name: str = ""
+
+    @property
+    def is_raster(self) -> bool:
+        """Whether files of this format hold pixels."""
+        return bool(self.raster_name)
+
+    def writer(self) -> Writer:
+        """The function that writes it."""
+        found: Writer = getattr(import_module(self.module), self.function)
+        return found
+
+
+FORMATS: Final = {
+    ".png": Format("vmesh.formats.raster", "write_raster", "PNG"),
+    ".jpg": Format("vmesh.formats.raster", "write_raster", "JPEG"),
+    ".jpeg": Format("vmesh.formats.raster", "write_raster", "JPEG"),
+    ".webp": Format("vmesh.formats.raster", "write_raster", "WEBP"),
+    ".tif": Format("vmesh.formats.raster", "write_raster", "TIFF"),
+    ".tiff": Format("vmesh.formats.raster", "write_raster", "TIFF"),
+    ".svg": Format("vmesh.formats.svg", "write_svg"),
+    ".svgz": Format("vmesh.formats.svg", "write_svgz"),
+    ".pdf": Format("vmesh.formats.pdf", "write_pdf"),
+}
+
+RASTER_SUFFIXES: Final = tuple(suffix for suffix, f in FORMATS.items() if f.is_raster)
+
+
+def format_of(path: str | os.PathLike[str]) -> Format:
+    """Format that a file's name asks for.
+
+    Raises
+    ------
+    ValueError
+        If its ending is not in the table.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        raise ValueError(f"expected a name that ends in {', '.join(FORMATS)}, got {os.fspath(path)}")
+    return FORMATS[suffix]
+
+
+def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> None:
+    """Write a mesh into an open file; options are those of `render` or of the format's writer."""
+    if not target.is_raster:
+        target.writer()(mesh, stream, **options)
+        return
+    from vmesh.formats.raster import render
+
+    raster = render(mesh, **options)
+    target.writer()(raster, stream, target.raster_name, metadata=mesh.metadata)
+
+
+def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
+    """Write a mesh as PNG, JPEG, WebP, TIFF, SVG or PDF, by the ending of the file's name.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    path : path
+        Replaced only when the new file is complete.
+    **options
+        For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient" or "flat".
+    """
+    target = format_of(path)
+    with atomic_output(path) as stream:
+        write_mesh(mesh, stream, target, **options)
