@@ -123,17 +123,22 @@ def read_chunks(data: bytes) -> list[Chunk]:
     Raises
     ------
     FormatError
-        With the code ``signature``, ``truncated``, ``chunk``, ``checksum`` or ``trailing``.
+        With the code ``signature``, ``truncated``, ``version``, ``chunk``, ``checksum`` or
+        ``trailing``.
     """
     if not is_vmesh(data):
-        if data and SIGNATURE.startswith(data):
+        if SIGNATURE.startswith(data):
             raise FormatError("truncated", "the file ends within its signature", len(data))
         raise FormatError(
             "signature",
             f"expected the signature of a .vmesh file, got {data[: len(SIGNATURE)].hex(' ')!r}",
             0,
         )
-    chunks = list(_iterate_chunks(data))
+    chunks: list[Chunk] = []
+    for chunk in _iterate_chunks(data):
+        if not chunks:
+            _check_version(chunk)
+        chunks.append(chunk)
     _check_order(chunks)
     return chunks
 
@@ -161,6 +166,20 @@ def _iterate_chunks(data: bytes) -> Iterator[Chunk]:
         offset = end + _CHECKSUM.size
     if offset != len(data):
         raise FormatError("trailing", f"{len(data) - offset} bytes follow the end", offset)
+
+
+def _check_version(chunk: Chunk) -> None:
+    """Refuse a file of a newer version by its first chunk, before anything else in it matters."""
+    if chunk.tag != HEADER_TAG or len(chunk.content) < 2:
+        raise FormatError("chunk", "the first chunk must be HEAD with a version", chunk.offset)
+    version = (chunk.content[0], chunk.content[1])
+    if version > (MAJOR_VERSION, MINOR_VERSION):
+        raise FormatError(
+            "version",
+            f"the file is of version {version[0]}.{version[1]}, "
+            f"this program reads up to {MAJOR_VERSION}.{MINOR_VERSION}",
+            chunk.content_offset,
+        )
 
 
 def _check_order(chunks: list[Chunk]) -> None:
@@ -194,19 +213,10 @@ def read_header(chunks: list[Chunk]) -> Header:
     Raises
     ------
     FormatError
-        With the code ``version`` or ``header``.
+        With the code ``header``.
     """
     chunk = chunks[0]
     content, offset = chunk.content, chunk.content_offset
-    if len(content) < 2:
-        raise FormatError("header", "chunk HEAD is too short", offset)
-    if (content[0], content[1]) > (MAJOR_VERSION, MINOR_VERSION):
-        raise FormatError(
-            "version",
-            f"the file is of version {content[0]}.{content[1]}, "
-            f"this program reads up to {MAJOR_VERSION}.{MINOR_VERSION}",
-            offset,
-        )
     if len(content) < _HEADER.size:
         raise FormatError("header", "chunk HEAD is too short", offset)
     steps = tuple(content[_HEADER.size :])

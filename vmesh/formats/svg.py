@@ -20,7 +20,7 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill, sum_pixels
+from vmesh.kernels.scanline import SUBPIXEL, fill, label
 from vmesh.mesh import Mesh
 
 Mode = Literal["gradient", "flat"]
@@ -46,7 +46,7 @@ def write_svg(mesh: Mesh, stream: BinaryIO | gzip.GzipFile, *, mode: Mode = "gra
     size = {"width": str(mesh.width), "height": str(mesh.height)}
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
     colors = mesh.colors
-    outlines = _outlines(mesh)
+    outset = _outset(mesh)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
         document.element("svg", root, nsmap={None: _NAMESPACE}),
@@ -56,9 +56,9 @@ def write_svg(mesh: Mesh, stream: BinaryIO | gzip.GzipFile, *, mode: Mode = "gra
         if mesh.n_components == 4:
             frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **size}
             with document.element("mask", {"id": "alpha", **frame}):
-                _write_layer(document, mesh, colors[:, 3:], outlines, mode, "m", group)
+                _write_layer(document, mesh, colors[:, 3:], outset, mode, "m", group)
             group["mask"] = "url(#alpha)"
-        _write_layer(document, mesh, colors[:, :3], outlines, mode, "g", group)
+        _write_layer(document, mesh, colors[:, :3], outset, mode, "g", group)
 
 
 def write_svgz(mesh: Mesh, stream: BinaryIO, *, mode: Mode = "gradient") -> None:
@@ -72,7 +72,7 @@ def _write_layer(
     document: etree._IncrementalFileWriter,
     mesh: Mesh,
     colors: UInt8Array,
-    outlines: list[str],
+    outset: Float64Array,
     mode: Mode,
     prefix: str,
     group: dict[str, str],
@@ -80,7 +80,7 @@ def _write_layer(
     """Write all triangles in a group, with colours of shape (n, 1) or (n, 3)."""
     rgb = np.repeat(colors, 3, axis=1) if colors.shape[1] == 1 else colors
     corners = rgb.astype(np.float64)[mesh.triangles]
-    fills = _hex_colors(_flat_colors(mesh, rgb) if mode == "flat" else corners.mean(axis=1))
+    fills = _hex_colors(_flat_colors(mesh, rgb, outset) if mode == "flat" else corners.mean(axis=1))
     with document.element("g", group):
         document.write("\n")
         whole = {"width": str(mesh.width), "height": str(mesh.height)}
@@ -91,7 +91,7 @@ def _write_layer(
                 for t, element in _gradients(mesh, corners, prefix):
                     fills[t] = f"url(#{element.get('id')})"
                     document.write(element, "\n")
-        for outline, paint in zip(outlines, fills, strict=True):
+        for outline, paint in zip(_path_data(outset), fills, strict=True):
             document.write(etree.Element("path", {"fill": paint, "d": outline}), "\n")
 
 
@@ -139,8 +139,8 @@ def _slopes(points: Float64Array, values: Float64Array) -> Float64Array:
     return slopes
 
 
-def _outlines(mesh: Mesh) -> list[str]:
-    """Path data of the triangles, moved outwards."""
+def _outset(mesh: Mesh) -> Float64Array:
+    """Corners of the triangles, moved outwards; shape (m, 3, 2), in pixels."""
     points = mesh.points[mesh.triangles]
     sides = np.roll(points, -1, axis=1) - points
     lengths = np.linalg.norm(sides, axis=2, keepdims=True)
@@ -151,26 +151,39 @@ def _outlines(mesh: Mesh) -> list[str]:
     miters = _OUTSET * (outward + before) / np.maximum(1.0 + cosine, 1e-6)
     reach = np.linalg.norm(miters, axis=2, keepdims=True)
     miters *= np.minimum(1.0, _LONGEST_MITER / np.maximum(reach, 1e-9))
+    moved: Float64Array = np.round(points + miters, 2)
+    return moved
+
+
+def _path_data(outset: Float64Array) -> list[str]:
+    """Path data of triangles of shape (m, 3, 2)."""
     return [
         f"M{_number(ax)},{_number(ay)}L{_number(bx)},{_number(by)} {_number(cx)},{_number(cy)}z"
-        for ax, ay, bx, by, cx, cy in (points + miters).reshape(-1, 6).tolist()
+        for ax, ay, bx, by, cx, cy in outset.reshape(-1, 6).tolist()
     ]
 
 
-def _flat_colors(mesh: Mesh, rgb: UInt8Array) -> Float64Array:
-    """Mean of the pixels that each triangle covers at the canvas's own size, shape (m, 3).
+def _flat_colors(mesh: Mesh, rgb: UInt8Array, outset: Float64Array) -> Float64Array:
+    """Mean of the pixels that show each triangle at the canvas's own size, shape (m, 3).
 
-    Crisp edges give a pixel to the triangle that holds its centre, so for small triangles this
-    is closer than the mean of the corners: by 3 to 4 dB at 20,000 vertices on photographs.
+    Crisp edges give a pixel to the last triangle that holds its centre, so for small triangles
+    this is closer than the mean of the corners: by some 3 dB at 20,000 vertices on photographs.
     """
     positions = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
     raster = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)
     fill(positions, mesh.triangles, rgb, raster)
-    sums = np.zeros((mesh.n_triangles, 4), dtype=np.int64)
-    sum_pixels(positions, mesh.triangles, raster, sums)
-    counts = sums[:, 3:]
+    corners = np.rint(outset.reshape(-1, 2) * SUBPIXEL).astype(np.int64)
+    labels = np.zeros((mesh.height, mesh.width), dtype=np.int32)
+    own_corners = np.arange(3 * mesh.n_triangles, dtype=np.int32).reshape(-1, 3)
+    label(corners, own_corners, labels)
+    owners = labels.ravel()
+    counts = np.bincount(owners, minlength=mesh.n_triangles)[:, None]
+    sums = [
+        np.bincount(owners, raster[:, :, z].ravel(), minlength=mesh.n_triangles) for z in range(3)
+    ]
     corner_means = rgb[mesh.triangles].mean(axis=1)
-    return np.where(counts > 0, sums[:, :3] / np.maximum(counts, 1), corner_means)
+    means = np.stack(sums, axis=1) / np.maximum(counts, 1)
+    return np.where(counts > 0, means, corner_means)
 
 
 def _mean_color(mesh: Mesh, corners: Float64Array) -> Float64Array:

@@ -5,7 +5,7 @@ writes, or reads and puts there, as ``coder[DECODING]`` says, so that the two ca
 
 An adaptive binary range coder, with the carry handled by the encoder alone::
 
-    range            32 bits, kept at 2**24 or more by shifting bytes out
+    range            2**32 at first, kept at 2**24 or more by shifting bytes out
     odds[c] = p, n   of context c: the probability of a 1 in units of 2**-16, times seen
     split            (range >> 12) * (p >> 4): the part of the range that stands for a 1
     after a bit      p += (65536 * bit - p) // (n + 2), n counted up to RATE_LIMIT
@@ -45,14 +45,15 @@ BAD_NUMBER = 1  # a coded number lies outside its range
 NUMBER_CONTEXTS = 32 + 32 * 4
 MAX_LENGTH = 31
 
-N_AREA_CLASSES = 40
+N_AREA_CLASSES = 40  # a box halved once has at most 2**39 sites
 N_SMALL = 8  # counts below this have a context of their own
 N_LARGE = 24
 SPLIT_CONTEXTS = N_AREA_CLASSES * N_SMALL * N_SMALL + N_LARGE * N_LARGE
 
 N_SPREADS = 10
 N_PEERS = 4
-COMPONENT_CONTEXTS = N_SPREADS * N_PEERS * (1 + 24) + N_PEERS
+SIZE_CONTEXTS = 23
+COMPONENT_CONTEXTS = N_SPREADS * N_PEERS * SIZE_CONTEXTS + N_PEERS
 
 
 @kernel
@@ -93,7 +94,7 @@ def start(coder: Int64Array, data: UInt8Array, decoding: int) -> None:
     """Begin to write into, or to read from, `data`."""
     coder[:] = 0
     coder[DECODING] = decoding
-    coder[RANGE] = MASK
+    coder[RANGE] = MASK + 1
     coder[CACHE] = -1
     if decoding:
         for _ in range(4):
@@ -184,7 +185,7 @@ def code_split(
     while low < high:
         middle = (low + high) >> 1
         if count < N_SMALL:
-            context = (min(area, N_AREA_CLASSES - 1) * N_SMALL + count) * N_SMALL + middle
+            context = (area * N_SMALL + count) * N_SMALL + middle
         else:
             context = N_AREA_CLASSES * N_SMALL * N_SMALL + min(size, N_LARGE - 1) * N_LARGE
             context += min(depth, N_LARGE - 1)
@@ -403,14 +404,14 @@ def code_levels(
                 prediction = previous[z]
                 spread = N_SPREADS - 1
             base = z * COMPONENT_CONTEXTS
-            context = base + (spread * N_PEERS + peer) * 25
+            context = base + (spread * N_PEERS + peer) * SIZE_CONTEXTS
             error = levels[v, z] - prediction
             size = code_size(coder, data, odds, context, abs(error))
             if size < 0:
                 return BAD_NUMBER
             negative = 0
             if size > 0:
-                sign_context = base + N_SPREADS * N_PEERS * 25 + peer
+                sign_context = base + N_SPREADS * N_PEERS * SIZE_CONTEXTS + peer
                 negative = code_bit(coder, data, odds, sign_context, 1 if error < 0 else 0)
             level = prediction - size if negative == 1 else prediction + size
             if level < lowest[z] or level > highest[z]:
@@ -434,8 +435,8 @@ def bit_length(number: int | np.int64) -> int:
 def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
     """Code the size of a difference: its bit length in unary, then its lower bits.
 
-    Uses 25 contexts from c: 10 for the length, 15 for the bit below the leading one and the
-    next. Returns -1 if the length is more than 10.
+    Uses SIZE_CONTEXTS contexts from c: 10 for the length, 7 for the bit below the leading one, 6
+    for those after it. Returns -1 if the length is more than 10.
     """
     length = bit_length(size)
     coded = 0

@@ -1,0 +1,77 @@
+"""Programs and libraries that others wrote, which draw SVG and PDF for the tests."""
+
+from __future__ import annotations
+
+import io
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from PIL import Image
+
+Pixels = npt.NDArray[np.uint8]
+Renderer = Callable[[Path, int], Pixels]
+
+
+def _pixels(image: Image.Image) -> Pixels:
+    return np.asarray(image.convert("RGB"))
+
+
+def need_program(name: str, package: str) -> str:
+    """Path of a program; the test is skipped by name where it is missing."""
+    found = shutil.which(name)
+    if found is None:
+        pytest.skip(f"renderer {name} is missing (package {package})")
+    return found
+
+
+def draw_with_librsvg(path: Path, scale: int) -> Pixels:
+    program = need_program("rsvg-convert", "librsvg2-bin")
+    drawn = subprocess.run(
+        [program, "--unlimited", "--zoom", str(scale), str(path)], check=True, capture_output=True
+    )
+    return _pixels(Image.open(io.BytesIO(drawn.stdout)))
+
+
+def draw_with_resvg(path: Path, scale: int) -> Pixels:
+    resvg_py = pytest.importorskip("resvg_py", reason="renderer resvg is missing (resvg-py)")
+    drawn = resvg_py.svg_to_bytes(svg_path=str(path), zoom=scale)
+    return _pixels(Image.open(io.BytesIO(bytes(drawn))))
+
+
+def draw_with_poppler(path: Path, scale: int) -> Pixels:
+    program = need_program("pdftoppm", "poppler-utils")
+    drawn = subprocess.run(
+        [program, "-r", str(72 * scale), "-png", "-singlefile", str(path)],
+        check=True,
+        capture_output=True,
+    )
+    return _pixels(Image.open(io.BytesIO(drawn.stdout)))
+
+
+def draw_with_mupdf(path: Path, scale: int) -> Pixels:
+    pymupdf = pytest.importorskip("pymupdf", reason="renderer mupdf is missing (pymupdf)")
+    with pymupdf.open(path) as document:
+        page = document[0].get_pixmap(matrix=pymupdf.Matrix(scale, scale), alpha=False)
+        return np.frombuffer(page.samples, np.uint8).reshape(page.h, page.w, page.n)[:, :, :3]
+
+
+def draw_with_pdfium(path: Path, scale: int) -> Pixels:
+    pypdfium2 = pytest.importorskip("pypdfium2", reason="renderer pdfium is missing (pypdfium2)")
+    document = pypdfium2.PdfDocument(path)
+    try:
+        return _pixels(document[0].render(scale=scale).to_pil())
+    finally:
+        document.close()
+
+
+SVG_RENDERERS: dict[str, Renderer] = {"librsvg": draw_with_librsvg, "resvg": draw_with_resvg}
+PDF_RENDERERS: dict[str, Renderer] = {
+    "poppler": draw_with_poppler,
+    "mupdf": draw_with_mupdf,
+    "pdfium": draw_with_pdfium,
+}
