@@ -13,12 +13,15 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
+from vmesh.formats.picture import flatten
+
 Pixels = npt.NDArray[np.uint8]
 Renderer = Callable[[Path, int], Pixels]
 
 
 def _pixels(image: Image.Image) -> Pixels:
-    return np.asarray(image.convert("RGB"))
+    """What a viewer shows: the picture on white."""
+    return flatten(np.asarray(image.convert("RGBA")))
 
 
 def need_program(name: str, package: str) -> str:

@@ -1,0 +1,328 @@
+"""The command line, run as a program."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import vmesh
+from vmesh.codec import layout
+
+COFFEE = Path(__file__).parents[1] / "images" / "coffee.png"
+CHELSEA = Path(__file__).parents[1] / "images" / "chelsea.png"
+
+
+def run(*arguments: str | Path, given: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    """The program with these arguments and this standard input."""
+    command = [sys.executable, "-m", "vmesh", *map(str, arguments)]
+    return subprocess.run(command, input=given, capture_output=True, check=False)
+
+
+def succeed(*arguments: str | Path, given: bytes = b"") -> bytes:
+    """What the program writes to standard output when it does its work in silence."""
+    done = run(*arguments, given=given)
+    assert done.returncode == 0, done.stderr.decode()
+    assert done.stderr == b""
+    return done.stdout
+
+
+def fail(status: int, *arguments: str | Path, given: bytes = b"") -> str:
+    """What the program says when it fails, without a traceback."""
+    done = run(*arguments, given=given)
+    text = done.stderr.decode()
+    assert done.returncode == status, text
+    assert "Traceback" not in text
+    if status == 1:
+        assert text.startswith("vmesh: ")
+        assert text.count("\n") == 1
+    return text
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("cli") / "coffee.vmesh"
+    succeed("encode", COFFEE, path, "--vertices", "2000")
+    return path
+
+
+def test_encode_writes_what_the_library_writes(file: Path) -> None:
+    mesh = vmesh.encode(np.asarray(Image.open(COFFEE).convert("RGB")), vertices=2000)
+    assert file.read_bytes() == vmesh.dumps(mesh)
+
+
+def test_encode_meets_the_density_and_reports_as_json(tmp_path: Path) -> None:
+    target = tmp_path / "out.vmesh"
+    figures = json.loads(succeed("encode", CHELSEA, target, "--density", "0.01", "--json"))
+    assert figures["vertices"] == pytest.approx(0.01 * 451 * 300, rel=0.02)
+    assert figures["bytes"] == target.stat().st_size
+    assert figures["bits_per_vertex"] == pytest.approx(
+        8 * figures["bytes"] / figures["vertices"], abs=1e-3
+    )
+
+
+def test_every_encoder_option_is_heard(tmp_path: Path) -> None:
+    names = "--gamma 0.7 --sampler channels --diffusion ostromoukhov --colors sampled"
+    options = [*names.split(), "--color-step", "4", "--seed", "3", "--density", "0.005"]
+    target = tmp_path / "out.vmesh"
+    succeed("encode", CHELSEA, target, *options)
+    mesh = vmesh.encode(
+        np.asarray(Image.open(CHELSEA).convert("RGB")),
+        gamma=0.7,
+        sampler="channels",
+        diffusion="ostromoukhov",
+        colors="sampled",
+        color_step=4,
+        seed=3,
+        density=0.005,
+    )
+    loaded = vmesh.load(target)
+    assert loaded == mesh.canonical().replaced(metadata=loaded.metadata)
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])
+def test_decode_writes_images_of_any_size(file: Path, tmp_path: Path, suffix: str) -> None:
+    target = tmp_path / f"out.{suffix}"
+    succeed("decode", file, target, "--width", "300")
+    with Image.open(target) as image:
+        assert image.size == (300, 200)
+
+
+def test_decode_gives_the_native_raster(file: Path, tmp_path: Path) -> None:
+    succeed("decode", file, tmp_path / "out.png")
+    assert np.array_equal(
+        np.asarray(Image.open(tmp_path / "out.png")), vmesh.render(vmesh.load(file))
+    )
+
+
+def test_decode_transforms(file: Path, tmp_path: Path) -> None:
+    succeed("decode", file, tmp_path / "out.png", "--transform", "0,1,-1,0,0,0", "--scale", "0.5")
+    with Image.open(tmp_path / "out.png") as image:
+        assert image.size == (200, 300)
+
+
+@pytest.mark.parametrize(
+    ("command", "suffix", "start"),
+    [
+        ("to-svg", "svg", b"<svg"),
+        ("to-svg", "svgz", b"\x1f\x8b"),
+        ("to-pdf", "pdf", b"%PDF"),
+    ],
+)
+def test_vector_commands_take_meshes_and_photographs(
+    file: Path, tmp_path: Path, command: str, suffix: str, start: bytes
+) -> None:
+    from_mesh, from_photograph = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
+    succeed(command, file, from_mesh)
+    succeed(command, COFFEE, from_photograph, "--vertices", "2000")
+    assert from_mesh.read_bytes().startswith(start)
+    assert from_mesh.read_bytes() == from_photograph.read_bytes()
+
+
+def test_a_dash_is_standard_input_and_output() -> None:
+    data = succeed("encode", "-", "-", "--vertices", "500", given=COFFEE.read_bytes())
+    assert vmesh.loads(data).width == 600
+    assert succeed("decode", "-", "-", given=data).startswith(b"\x89PNG")
+    assert succeed("to-svg", "-", "-", given=data).startswith(b"<svg")
+    assert succeed("to-pdf", "-", "-", given=data).startswith(b"%PDF")
+    assert b"600 x 400" in succeed("info", "-", given=data)
+
+
+def test_info_lists_the_parts_of_a_file(file: Path) -> None:
+    figures = json.loads(succeed("info", file, "--json"))
+    mesh = vmesh.load(file)
+    assert (figures["width"], figures["height"]) == (600, 400)
+    assert figures["vertices"] == mesh.n_vertices
+    assert figures["triangles"] == mesh.n_triangles
+    parts = figures["parts"]
+    assert [part["tag"] for part in parts] == ["HEAD", "VERT", "COLR", "DONE"]
+    assert sum(part["bytes"] for part in parts) == figures["bytes"] - len(layout.SIGNATURE)
+    text = succeed("info", file).decode()
+    assert "bits per vertex" in text
+    assert str(mesh.n_vertices) in text
+
+
+@pytest.mark.parametrize("show", ["salience", "points", "mesh", "render", "error", "sheet"])
+def test_inspect_draws_every_stage(tmp_path: Path, show: str) -> None:
+    target = tmp_path / "out.png"
+    succeed("inspect", CHELSEA, target, "--show", show, "--density", "0.01")
+    with Image.open(target) as image:
+        pixels = np.asarray(image)
+    if show == "sheet":
+        assert pixels.shape[0] > 2 * 300
+        assert pixels.shape[1] > 3 * 451
+    else:
+        assert pixels.shape == (300, 451, 3)
+    assert pixels.std() > 5
+
+
+def test_compare_measures_pictures_and_meshes_at_the_size_of_the_first(
+    file: Path, tmp_path: Path
+) -> None:
+    same = json.loads(succeed("compare", COFFEE, COFFEE, "--json"))
+    assert same == {"psnr_rgb": None, "psnr_y": None, "ssim": 1.0}
+    figures = json.loads(succeed("compare", COFFEE, file, "--json"))
+    rendered = vmesh.render(vmesh.load(file)).astype(float)
+    error = ((np.asarray(Image.open(COFFEE).convert("RGB")) - rendered) ** 2).mean()
+    assert figures["psnr_rgb"] == pytest.approx(10 * np.log10(255**2 / error))
+    succeed("decode", file, tmp_path / "large.png", "--scale", "2")
+    other_size = json.loads(succeed("compare", tmp_path / "large.png", file, "--json"))
+    assert other_size["psnr_rgb"] is None
+    assert "dB" in succeed("compare", COFFEE, file).decode()
+
+
+# Bad input: one clear line, status 1, and nothing lost.
+
+
+@pytest.fixture
+def garbage(tmp_path: Path) -> Path:
+    path = tmp_path / "garbage.png"
+    path.write_bytes(b"this is not an image")
+    return path
+
+
+def test_what_is_not_an_image_is_told(garbage: Path, tmp_path: Path) -> None:
+    text = fail(1, "encode", garbage, tmp_path / "out.vmesh")
+    assert "garbage.png" in text
+    assert "not an image" in text
+    assert not (tmp_path / "out.vmesh").exists()
+
+
+def test_a_truncated_image_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "half.png"
+    path.write_bytes(COFFEE.read_bytes()[:100_000])
+    assert "damaged" in fail(1, "encode", path, tmp_path / "out.vmesh")
+
+
+def test_an_empty_file_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "empty.png"
+    path.touch()
+    assert "empty" in fail(1, "encode", path, tmp_path / "out.vmesh")
+    fail(1, "decode", path, tmp_path / "out.png")
+
+
+def test_a_missing_file_and_a_folder_are_told(tmp_path: Path) -> None:
+    assert "No such file" in fail(1, "encode", tmp_path / "none.png", tmp_path / "out.vmesh")
+    assert "directory" in fail(1, "encode", tmp_path, tmp_path / "out.vmesh").lower()
+    assert "directory" in fail(1, "info", tmp_path).lower()
+
+
+def test_an_image_with_too_many_pixels_is_told(tmp_path: Path) -> None:
+    text = fail(1, "encode", COFFEE, tmp_path / "out.vmesh", "--max-pixels", "1000")
+    assert "limit" in text
+
+
+def test_an_unwritable_output_is_told(tmp_path: Path) -> None:
+    text = fail(1, "encode", CHELSEA, tmp_path / "none" / "out.vmesh", "--vertices", "100")
+    assert "No such file" in text
+    folder = tmp_path / "folder.vmesh"
+    folder.mkdir()
+    fail(1, "encode", CHELSEA, folder, "--vertices", "100")
+    assert list(tmp_path.iterdir()) == [folder]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_protected_folder_is_told(tmp_path: Path) -> None:
+    tmp_path.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    assert "denied" in fail(1, "encode", CHELSEA, tmp_path / "out.vmesh", "--vertices", "100")
+
+
+def test_an_unknown_ending_is_wrong_usage(file: Path, tmp_path: Path) -> None:
+    assert ".png" in fail(2, "decode", file, tmp_path / "out.xyz")
+    assert ".vmesh" in fail(2, "encode", COFFEE, tmp_path / "out.xyz")
+    assert ".svgz" in fail(2, "to-svg", file, tmp_path / "out.pdf")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("encode", COFFEE, "out.vmesh", "--vertices", "100", "--density", "0.1"),
+        ("encode", COFFEE, "out.vmesh", "--gamma", "0"),
+        ("encode", COFFEE, "out.vmesh", "--density", "2"),
+        ("encode", COFFEE, "out.vmesh", "--method", "magic"),
+        ("encode", COFFEE, "-", "--json"),
+        ("encode", COFFEE),
+        ("decode", COFFEE, "out.png", "--scale", "2", "--width", "10"),
+        ("decode", COFFEE, "out.png", "--transform", "1,2,3"),
+        ("paint", COFFEE),
+        ("--wrong",),
+    ],
+)
+def test_wrong_usage_has_status_two(arguments: tuple[str | Path, ...]) -> None:
+    assert "Usage" in fail(2, *arguments)
+
+
+def test_a_newer_version_is_told(file: Path, tmp_path: Path) -> None:
+    chunks = [(chunk.tag, chunk.content) for chunk in layout.read_chunks(file.read_bytes())]
+    head = bytearray(chunks[0][1])
+    head[0] = 7
+    newer = tmp_path / "newer.vmesh"
+    newer.write_bytes(layout.pack_file([(b"HEAD", bytes(head)), *chunks[1:]]))
+    for command in ("decode", "to-svg"):
+        suffix = {"decode": "png", "to-svg": "svg"}[command]
+        assert "version 7.0" in fail(1, command, newer, tmp_path / f"out.{suffix}")
+    assert "version 7.0" in fail(1, "info", newer)
+
+
+def test_a_damaged_file_is_told_and_harms_no_earlier_output(file: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / "damaged.vmesh"
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    damaged.write_bytes(data)
+    target = tmp_path / "out.png"
+    target.write_bytes(b"an earlier picture")
+    assert "code checksum" in fail(1, "decode", damaged, target)
+    assert target.read_bytes() == b"an earlier picture"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["damaged.vmesh", "out.png"]
+
+
+def test_a_photograph_is_not_decoded_as_a_mesh(tmp_path: Path) -> None:
+    assert "signature" in fail(1, "decode", COFFEE, tmp_path / "out.png")
+    renamed = tmp_path / "photo.vmesh"
+    renamed.write_bytes(COFFEE.read_bytes())
+    assert "signature" in fail(1, "to-svg", renamed, tmp_path / "out.svg")
+
+
+def test_a_mesh_is_not_encoded_again(file: Path, tmp_path: Path) -> None:
+    assert "photograph" in fail(1, "encode", file, tmp_path / "out.vmesh")
+
+
+def test_a_rotated_photograph_is_encoded_upright(tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    source = tmp_path / "rotated.jpg"
+    Image.open(CHELSEA).convert("RGB").save(source, exif=exif)
+    succeed("encode", source, tmp_path / "out.vmesh", "--vertices", "500")
+    mesh = vmesh.load(tmp_path / "out.vmesh")
+    assert (mesh.width, mesh.height) == (300, 451)
+
+
+def test_help_names_every_command_and_loads_neither_numba_nor_pillow(file: Path) -> None:
+    script = (
+        "import sys\n"
+        "from vmesh.cli.main import main\n"
+        "try:\n    main()\n"
+        "finally:\n"
+        "    loaded = {'numba', 'PIL', 'scipy', 'rich'} & set(sys.modules)\n"
+        "    assert not loaded, loaded\n"
+    )
+    for arguments in (["--help"], ["info", str(file)]):
+        done = subprocess.run(
+            [sys.executable, "-c", script, *arguments], capture_output=True, check=False
+        )
+        assert done.returncode == 0, done.stderr.decode()
+        if arguments == ["--help"]:
+            commands = ["encode", "decode", "to-svg", "to-pdf", "info", "inspect", "compare"]
+            assert all(command in done.stdout.decode() for command in commands)
+
+
+def test_the_version_is_told() -> None:
+    assert vmesh.__version__ in succeed("--version").decode()

@@ -1,0 +1,5 @@
+"""``python -m vmesh``."""
+
+from vmesh.cli.main import main
+
+main()
