@@ -54,7 +54,7 @@ class ColorLattice:
     def __post_init__(self) -> None:
         if len(self.steps) not in (1, 3, 4):
             raise ValueError(f"expected 1, 3 or 4 colour components, got {len(self.steps)}")
-        if not all(1 <= step <= MAX_STEP for step in self.steps):
+        if not all(isinstance(step, int) and 1 <= step <= MAX_STEP for step in self.steps):
             raise ValueError(f"expected colour steps of 1 to {MAX_STEP}, got {self.steps}")
 
     @classmethod

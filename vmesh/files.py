@@ -25,7 +25,7 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         return
     if target.is_dir():
         raise IsADirectoryError(f"{os.fspath(path)} is a folder")
-    temporary = target.with_name(f".{target.name[:200]}.{secrets.token_hex(4)}.part")
+    temporary = target.with_name(f".{secrets.token_hex(8)}.part")
     try:
         with temporary.open("xb") as stream:
             yield stream

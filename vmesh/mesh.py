@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from operator import index
 from typing import Any, Final
 
 import numpy as np
@@ -97,6 +98,8 @@ class Mesh:
     metadata: Metadata = field(default_factory=Metadata)
 
     def __post_init__(self) -> None:
+        for name in ("width", "height", "subdivision"):
+            object.__setattr__(self, name, index(getattr(self, name)))
         for name in ("vertices", "triangles", "levels"):
             object.__setattr__(self, name, _frozen(getattr(self, name), np.int32, name))
 
@@ -181,7 +184,7 @@ class Mesh:
     def check(self) -> None:
         """Raise :class:`ValueError` unless this is a mesh that a file may hold.
 
-        The area rule: vertices are distinct and on the canvas, every triangle is positively
+        The area rule: vertices are distinct, on the canvas and in use, every triangle is positively
         oriented, and the areas add up to the canvas. With every inner edge shared by exactly two
         triangles and every other edge on the border, that means that each point of the canvas
         is covered exactly once.
@@ -329,6 +332,8 @@ class Mesh:
         on_border = same & ((ends[:, 0] == 0) | (ends[:, 0] == far))
         if not on_border.any(axis=1).all():
             raise ValueError("an inner edge belongs to only one triangle")
+        if not np.bincount(self.triangles.ravel(), minlength=self.n_vertices).all():
+            raise ValueError("a vertex belongs to no triangle")
 
 
 @dataclass(frozen=True, slots=True)

@@ -462,11 +462,23 @@ def test_a_damaged_file_has_the_same_code_by_specification_and_library(name: str
     assert code_of(vmesh.loads, data) == code
 
 
-def test_a_listed_vertex_without_triangles_is_valid() -> None:
+def test_a_vertex_without_triangles_is_invalid() -> None:
     triangles = np.array([(0, 1, 4), (0, 4, 3)], dtype=np.int32)
-    data = vmesh.dumps(fan(2, 1, 1).replaced(triangles=triangles))
+    mesh = fan(2, 1, 1).replaced(triangles=triangles)
+    chunks = {chunk.tag: chunk.content for chunk in layout.read_chunks(vmesh.dumps(fan(2, 1, 1)))}
+    head = bytearray(chunks[b"HEAD"])
+    head[12:17] = struct.pack("<IB", 2, layout.LISTED_TRIANGLES)
+    data = layout.pack_file(
+        [
+            (b"HEAD", bytes(head)),
+            (b"VERT", chunks[b"VERT"]),
+            (b"TRIS", encode_triangles(mesh.triangles, mesh.n_vertices)),
+            (b"COLR", b""),
+            (b"DONE", b""),
+        ]
+    )
 
-    assert_same_mesh(decode(data), vmesh.loads(data))
+    assert code_of(decode, data) == code_of(vmesh.loads, data) == "geometry"
 
 
 def test_the_damaged_files_show_every_code() -> None:

@@ -112,6 +112,14 @@ def pack_file(chunks: Iterable[tuple[bytes, bytes]]) -> bytes:
     return SIGNATURE + b"".join(pack_chunk(tag, content) for tag, content in chunks)
 
 
+def check_ancillary(tag: bytes) -> None:
+    """Raise :class:`ValueError` unless a tag can name an ancillary chunk that is not known."""
+    if not (_TAG_PATTERN.fullmatch(tag) and tag[:1].islower()):
+        raise ValueError(f"expected a tag of four letters, the first one small, got {tag!r}")
+    if tag in METADATA_TAGS.values():
+        raise ValueError(f"chunk {tag.decode()} is known: it cannot be kept as an unknown one")
+
+
 def is_vmesh(start: bytes) -> bool:
     """Whether a file that starts with these bytes calls itself a .vmesh file."""
     return start[: len(SIGNATURE)] == SIGNATURE

@@ -62,4 +62,6 @@ def _metadata_contents(metadata: Metadata) -> Iterator[tuple[bytes, bytes]]:
         block = getattr(metadata, name)
         if block:
             yield tag, zlib.compress(block, 9)
-    yield from metadata.unknown
+    for tag, content in metadata.unknown:
+        layout.check_ancillary(tag)
+        yield tag, content

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import distance_transform_edt
 
 from vmesh.arrays import UInt8Array, UInt16Array
 from vmesh.color_lattice import ColorLattice
@@ -56,7 +57,7 @@ def encode(
         If the array or a setting is not as described.
     """
     chosen = Settings(**settings)
-    image = as_image(array)
+    image = with_hidden_colors_replaced(as_image(array))
     report = progress or _silent
 
     report("sampling")
@@ -114,6 +115,22 @@ def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples
         seed=settings.seed,
     )
     return salience, samples
+
+
+def with_hidden_colors_replaced(image: UInt8Array) -> UInt8Array:
+    """The picture with each fully transparent pixel in the colour of the nearest visible one.
+
+    What is hidden there would show where the mesh's alpha reaches a little further than that of
+    the picture. `image` has shape (h, w, c), uint8; only RGBA pictures change.
+    """
+    if image.shape[2] != 4 or image[:, :, 3].all() or not image[:, :, 3].any():
+        return image
+    nearest = distance_transform_edt(
+        image[:, :, 3] == 0, return_distances=False, return_indices=True
+    )
+    filled = image.copy()
+    filled[:, :, :3] = image[:, :, :3][tuple(nearest)]
+    return filled
 
 
 def as_image(array: npt.ArrayLike) -> UInt8Array:

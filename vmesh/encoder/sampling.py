@@ -142,12 +142,14 @@ def sample_scaled(
     """Samples of ``salience * scale / 2**16 + floor``; parameters as for :func:`sample`."""
     weights, strengths = diffusion_tables(diffusion)
     if sampler == "multiclass":
-        chosen = diffuse(salience, scale, floor, weights, strengths, seed)
+        chosen = diffuse(salience, scale, floor, weights, strengths, seed & 0xFFFFFFFF)
         classes = np.where(chosen > 0, np.left_shift(1, chosen, dtype=np.uint8) >> 1, 0)
     else:
         classes = np.zeros(salience.shape[1:], dtype=np.uint8)
         for i in range(len(salience)):
-            plane = diffuse(salience[i : i + 1], scale, floor, weights, strengths, seed + i)
+            plane = diffuse(
+                salience[i : i + 1], scale, floor, weights, strengths, (seed + i) & 0xFFFFFFFF
+            )
             classes |= plane << np.uint8(i)
     return Samples(classes.astype(np.uint8), _sample_border(salience, scale, floor))
 

@@ -65,6 +65,10 @@ class Settings:
                     f"expected {name} to be one of {', '.join(choices)}, "
                     f"got {getattr(self, name)!r}"
                 )
+        for name in ("vertices", "color_step", "seed"):
+            value = getattr(self, name)
+            if not (isinstance(value, int) or (value is None and name == "vertices")):
+                raise TypeError(f"expected {name} to be a whole number, got {value!r}")
         if not 0.0 < self.gamma <= 10.0:
             raise ValueError(f"expected a gamma above 0 and up to 10, got {self.gamma}")
         if self.vertices is not None and self.density is not None:

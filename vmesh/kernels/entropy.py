@@ -381,7 +381,6 @@ def code_levels(
     """
     n_vertices, n_components = levels.shape
     starts, neighbours = lower_neighbours(triangles, n_vertices)
-    previous = np.zeros(n_components, np.int64)
     for v in range(n_vertices):
         peer = 0
         for z in range(n_components):
@@ -400,8 +399,8 @@ def code_levels(
             if weights > 0:
                 prediction = (2 * total + weights) // (2 * weights)
                 spread = min(bit_length(most - least), N_SPREADS - 2)
-            else:
-                prediction = previous[z]
+            else:  # the first vertex: every other one has a neighbour before it
+                prediction = np.int64(0)
                 spread = N_SPREADS - 1
             base = z * COMPONENT_CONTEXTS
             context = base + (spread * N_PEERS + peer) * SIZE_CONTEXTS
@@ -417,7 +416,6 @@ def code_levels(
             if level < lowest[z] or level > highest[z]:
                 return BAD_NUMBER
             levels[v, z] = level
-            previous[z] = level
             peer = min(bit_length(size), N_PEERS - 1)
     return OK
 

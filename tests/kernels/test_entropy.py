@@ -1,0 +1,235 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests import twins
+from tests.strategies import lattices, meshes, point_sets
+from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.codec.payloads import (
+    decode_levels,
+    decode_positions,
+    decode_triangles,
+    encode_levels,
+    encode_positions,
+    encode_triangles,
+)
+from vmesh.color_lattice import ColorLattice
+from vmesh.errors import FormatError
+from vmesh.kernels import entropy
+from vmesh.mesh import Mesh
+
+N_CONTEXTS = 5
+Bits = list[tuple[int, int]]
+
+
+def written(bits: Bits) -> bytes:
+    """Bytes of (context, bit) pairs."""
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(N_CONTEXTS)
+    data = np.zeros(len(bits) + 8, np.uint8)
+    entropy.start(coder, data, 0)
+    for context, bit in bits:
+        entropy.code_bit(coder, data, odds, context, bit)
+    return data[: entropy.finish(coder, data)].tobytes()
+
+
+def read(data: bytes, contexts: list[int]) -> list[int]:
+    """The bits that are read by the odds of these contexts."""
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(N_CONTEXTS)
+    given_bytes = np.frombuffer(bytearray(data), np.uint8)
+    entropy.start(coder, given_bytes, 1)
+    return [entropy.code_bit(coder, given_bytes, odds, context, 0) for context in contexts]
+
+
+def as_bytes(data: bytes) -> UInt8Array:
+    return np.frombuffer(bytearray(data), np.uint8)
+
+
+def bit_lists() -> st.SearchStrategy[Bits]:
+    return st.lists(st.tuples(st.integers(0, N_CONTEXTS - 1), st.integers(0, 1)), max_size=300)
+
+
+@given(bit_lists())
+def test_bits_are_written_as_on_one_unbounded_integer(bits: Bits) -> None:
+    assert written(bits) == twins.range_coded(bits, N_CONTEXTS)
+
+
+@given(bit_lists())
+def test_bits_come_back(bits: Bits) -> None:
+    assert read(written(bits), [context for context, _ in bits]) == [bit for _, bit in bits]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.001, 0.03, 0.3, 0.5, 0.9, 0.999, 1.0])
+def test_long_sequences_of_any_odds_come_back_and_carry_rightly(share: float) -> None:
+    random = np.random.default_rng(4)
+    contexts = random.integers(0, N_CONTEXTS, 20_000)
+    ones = (random.random(20_000) < share).astype(int)
+    bits = list(zip(contexts.tolist(), ones.tolist(), strict=True))
+    data = written(bits)
+    assert data == twins.range_coded(bits, N_CONTEXTS)
+    assert read(data, contexts.tolist()) == [bit for _, bit in bits]
+    entropy_in_bytes = 0.0
+    if 0 < share < 1:
+        entropy_in_bytes = -share * np.log2(share) - (1 - share) * np.log2(1 - share)
+        entropy_in_bytes *= 20_000 / 8
+    assert len(data) < 1.05 * entropy_in_bytes + 60
+
+
+def test_a_run_of_bytes_to_carry_through_is_written_rightly() -> None:
+    # Zeros raise the low end; after enough of them it stands just below a carry.
+    for n in range(200):
+        bits = [(0, 0)] * n + [(1, 1)] * 3 + [(2, 0)] * 40
+        assert written(bits) == twins.range_coded(bits, N_CONTEXTS)
+
+
+def test_nothing_takes_no_bytes() -> None:
+    assert written([]) == b""
+
+
+def test_odds_stay_within_their_bounds() -> None:
+    for bit in (0, 1):
+        coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(1)
+        data = np.zeros(4096, np.uint8)
+        entropy.start(coder, data, 0)
+        for _ in range(20_000):
+            entropy.code_bit(coder, data, odds, 0, bit)
+        probability, seen = odds[0].tolist()
+        assert 64 <= probability <= 65472
+        assert seen == entropy.RATE_LIMIT
+
+
+@given(st.lists(st.integers(0, 2**31 - 2), max_size=60))
+def test_numbers_come_back(numbers: list[int]) -> None:
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(entropy.NUMBER_CONTEXTS)
+    data = np.zeros(4096, np.uint8)
+    entropy.start(coder, data, 0)
+    for number in numbers:
+        assert entropy.code_number(coder, data, odds, 0, number) == number
+    payload = data[: entropy.finish(coder, data)].copy()
+    odds = entropy.fresh_odds(entropy.NUMBER_CONTEXTS)
+    entropy.start(coder, payload, 1)
+    assert [entropy.code_number(coder, payload, odds, 0, 0) for _ in numbers] == numbers
+
+
+@given(st.lists(st.integers(0, 510), max_size=60))
+def test_sizes_come_back(sizes: list[int]) -> None:
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(entropy.SIZE_CONTEXTS)
+    data = np.zeros(4096, np.uint8)
+    entropy.start(coder, data, 0)
+    for size in sizes:
+        assert entropy.code_size(coder, data, odds, 0, size) == size
+    payload = data[: entropy.finish(coder, data)].copy()
+    odds = entropy.fresh_odds(entropy.SIZE_CONTEXTS)
+    entropy.start(coder, payload, 1)
+    assert [entropy.code_size(coder, payload, odds, 0, 0) for _ in sizes] == sizes
+
+
+@given(point_sets())
+def test_positions_come_back_in_raster_order(drawn: tuple[int, int, Int32Array]) -> None:
+    columns, rows, points = drawn
+    payload = encode_positions(points[::-1].copy(), columns, rows)
+    assert np.array_equal(decode_positions(payload, 0, len(points), columns, rows), points)
+
+
+def test_a_full_lattice_takes_no_bytes() -> None:
+    y, x = np.mgrid[:13, :9]
+    points = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
+    payload = encode_positions(points, 9, 13)
+    assert payload == b""
+    assert np.array_equal(decode_positions(payload, 0, 117, 9, 13), points)
+
+
+def test_positions_of_the_largest_lattice_come_back() -> None:
+    side = (1 << 19) + 1
+    points = np.array([(0, 0), (side - 1, 0), (0, side - 1), (side - 1, side - 1)], dtype=np.int32)
+    payload = encode_positions(points, side, side)
+    assert np.array_equal(decode_positions(payload, 0, 4, side, side), points)
+
+
+@given(st.binary(max_size=60), st.integers(1, 50), st.integers(1, 50), st.integers(1, 40))
+def test_any_bytes_are_distinct_positions_on_the_lattice_or_refused(
+    payload: bytes, columns: int, rows: int, n: int
+) -> None:
+    n = min(n, columns * rows)
+    try:
+        points = decode_positions(payload, 7, n, columns, rows)
+    except FormatError as error:
+        assert error.code == "positions"
+        return
+    assert (points >= 0).all()
+    assert (points < [columns, rows]).all()
+    assert len(np.unique(points, axis=0)) == n
+
+
+@given(meshes())
+def test_triangles_come_back(mesh: Mesh) -> None:
+    payload = encode_triangles(mesh.triangles, mesh.n_vertices)
+    result = decode_triangles(payload, 0, mesh.n_triangles, mesh.n_vertices)
+    assert np.array_equal(result, mesh.triangles)
+
+
+@given(st.binary(max_size=60), st.integers(1, 30), st.integers(1, 20))
+def test_any_bytes_are_triangles_of_known_vertices_or_refused(
+    payload: bytes, m: int, n_vertices: int
+) -> None:
+    try:
+        triangles = decode_triangles(payload, 7, m, n_vertices)
+    except FormatError as error:
+        assert error.code == "triangles"
+        assert 7 <= error.offset <= 7 + len(payload)
+        return
+    assert (triangles >= 0).all()
+    assert (triangles < n_vertices).all()
+
+
+@given(meshes())
+def test_levels_come_back(mesh: Mesh) -> None:
+    payload = encode_levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
+    result = decode_levels(payload, 0, mesh.vertices, mesh.triangles, mesh.lattice)
+    assert np.array_equal(result, mesh.levels)
+
+
+@given(meshes(), st.sampled_from([0, 1]))
+def test_extreme_levels_come_back(mesh: Mesh, parity: int) -> None:
+    bounds = np.stack(mesh.lattice.level_bounds())
+    levels = bounds[(np.arange(mesh.n_vertices) + parity) % 2]
+    payload = encode_levels(levels, mesh.vertices, mesh.triangles, mesh.lattice)
+    result = decode_levels(payload, 0, mesh.vertices, mesh.triangles, mesh.lattice)
+    assert np.array_equal(result, levels)
+
+
+@given(meshes(), lattices(), st.binary(max_size=80))
+def test_any_bytes_are_levels_within_bounds_or_refused(
+    mesh: Mesh, lattice: ColorLattice, payload: bytes
+) -> None:
+    try:
+        levels = decode_levels(payload, 7, mesh.vertices, mesh.triangles, lattice)
+    except FormatError as error:
+        assert error.code == "colors"
+        return
+    lowest, highest = lattice.level_bounds()
+    assert (levels >= lowest).all()
+    assert (levels <= highest).all()
+
+
+def test_a_payload_longer_than_the_first_buffer_is_written_whole() -> None:
+    random = np.random.default_rng(6)
+    sites = random.choice(1 << 20, 200_000, replace=False)
+    points = np.stack([sites % 1024, sites // 1024], axis=1).astype(np.int32)
+    payload = encode_positions(points, 1024, 1024)
+    assert len(payload) > 1 << 16
+    expected = points[np.argsort(sites)]
+    assert np.array_equal(decode_positions(payload, 0, 200_000, 1024, 1024), expected)
+
+
+def test_the_writer_never_writes_beyond_its_room() -> None:
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(1)
+    data = np.zeros(6, np.uint8)
+    entropy.start(coder, data[:4], 0)
+    for i in range(400):
+        entropy.code_bit(coder, data[:4], odds, 0, i % 2)
+    assert entropy.finish(coder, data[:4]) <= 4
+    assert coder[entropy.POSITION] > 4
+    assert as_bytes(data[4:].tobytes()).tolist() == [0, 0]

@@ -1,0 +1,83 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from vmesh.files import atomic_output
+
+
+def test_a_file_appears_when_its_block_ends(tmp_path: Path) -> None:
+    path = tmp_path / "picture.vmesh"
+    with atomic_output(path) as stream:
+        stream.write(b"new")
+        assert not path.exists()
+    assert path.read_bytes() == b"new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_earlier_file_is_replaced_only_at_the_end(tmp_path: Path) -> None:
+    path = tmp_path / "picture.vmesh"
+    path.write_bytes(b"old")
+    with atomic_output(str(path)) as stream:
+        stream.write(b"new")
+        stream.flush()
+        assert path.read_bytes() == b"old"
+    assert path.read_bytes() == b"new"
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_a_failing_block_leaves_the_folder_as_it_was(
+    tmp_path: Path, error: type[BaseException]
+) -> None:
+    path = tmp_path / "picture.vmesh"
+    path.write_bytes(b"old")
+    with pytest.raises(error), atomic_output(path) as stream:
+        stream.write(b"half of the n")
+        raise error
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(IsADirectoryError), atomic_output(tmp_path):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_folder_is_an_error_of_the_system(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError), atomic_output(tmp_path / "missing" / "picture.vmesh"):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_name_has_room_for_its_temporary_file(tmp_path: Path) -> None:
+    path = tmp_path / ("x" * 249 + ".vmesh")
+    with atomic_output(path) as stream:
+        stream.write(b"new")
+    assert path.read_bytes() == b"new"
+
+
+def test_a_long_name_of_wide_letters_has_room_for_its_temporary_file(tmp_path: Path) -> None:
+    path = tmp_path / ("é" * 120 + ".vmesh")
+    with atomic_output(path) as stream:
+        stream.write(b"new")
+    assert path.read_bytes() == b"new"
+
+
+def test_a_link_is_followed(tmp_path: Path) -> None:
+    path, link = tmp_path / "picture.vmesh", tmp_path / "link.vmesh"
+    path.write_bytes(b"old")
+    link.symlink_to(path)
+    with atomic_output(link) as stream:
+        stream.write(b"new")
+    assert link.is_symlink()
+    assert path.read_bytes() == b"new"
+
+
+@pytest.mark.skipif(not Path(os.devnull).is_char_device(), reason="no null device")
+def test_a_device_is_written_directly() -> None:
+    with atomic_output(os.devnull) as stream:
+        stream.write(b"new")
+    assert Path(os.devnull).is_char_device()

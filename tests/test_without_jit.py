@@ -1,0 +1,64 @@
+"""The kernels run as plain Python, and give the same bytes and pixels as when compiled."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from tests.pictures import PICTURES, disc, drawn, noise, ramp
+from tests.strategies import flipped
+from vmesh.codec.reader import loads
+from vmesh.codec.writer import dumps
+from vmesh.encoder.pipeline import encode
+
+ROOT = Path(__file__).parent.parent
+
+
+def fingerprints() -> dict[str, str]:
+    """A digest of what each step makes of a few small pictures."""
+    pictures = {
+        "ramp": ramp(16, 24),
+        "noise": noise(16, 24),
+        "disc": disc(24, 16, hidden=(255, 0, 0), visible=(0, 90, 200)),
+        "grey noise": PICTURES["grey noise"],
+        "one pixel": PICTURES["one pixel"],
+    }
+    result = {}
+    for name, picture in pictures.items():
+        for sampler in ("multiclass", "channels"):
+            mesh = encode(picture, density=0.15, sampler=sampler, seed=2**31 + 7)
+            random = np.random.default_rng(3)
+            turned = mesh.replaced(triangles=flipped(mesh.vertices, mesh.triangles, 9, random))
+            for each in (mesh, turned):
+                data = dumps(each)
+                again = loads(data)
+                assert again == each
+                large = again.transform((40.0, 0, 0, 40.0, 0, 0)).replaced(width=50, height=50)
+                parts = (data, drawn(again).tobytes(), drawn(large).tobytes())
+                digest = hashlib.sha256(b"".join(parts)).hexdigest()
+                result[f"{name}, {sampler}, {'turned' if each is turned else 'implied'}"] = digest
+    return result
+
+
+def test_plain_python_gives_the_bytes_and_pixels_of_the_compiled_kernels() -> None:
+    code = (
+        "import json, numba, tests.test_without_jit as own\n"
+        "assert numba.config.DISABLE_JIT\n"
+        "print(json.dumps(own.fingerprints()))"
+    )
+    plain = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=ROOT,
+    )
+    assert plain.returncode == 0, plain.stderr
+    assert json.loads(plain.stdout) == fingerprints()
