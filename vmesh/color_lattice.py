@@ -33,9 +33,11 @@ from vmesh.arrays import Int32Array, UInt8Array
 MAX_SAMPLE: Final = 255
 MAX_STEP: Final = 255
 
-# The error of a unit of Y, Co, Cg in the sum over R, G, B is 3, 1/2 and 3/4: steps in the
-# inverse ratio of the roots cost the same error in each component.
-_CHROMA_STEP_RATIOS: Final = (1.0, 2.4, 2.0)
+# The squared error of a unit of Y, Co, Cg counts 3, 1/2 and 3/4 in the sum over R, G, B, which
+# would balance steps of 1 : 2.4 : 2. Finer chroma serves as well: at 2 and 4 % of the pixels of
+# four photographs (8, 12, 10) costs 7 % more bytes than (8, 19, 16) and gains 0.18 and 0.29 dB, as
+# much as the same bytes gain in vertices, and smooth areas keep an even tint.
+_CHROMA_STEP_RATIOS: Final = (1.0, 1.5, 1.25)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,7 @@ class ColorLattice:
 
     @classmethod
     def uniform(cls, n_components: int, step: int) -> ColorLattice:
-        """Lattice whose components cost about the same error as luma with this step."""
+        """Lattice with this luma step and chroma steps in proportion."""
         if n_components == 1:
             return cls((step,))
         chroma = tuple(min(MAX_STEP, round(step * ratio)) for ratio in _CHROMA_STEP_RATIOS)
