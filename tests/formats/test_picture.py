@@ -112,15 +112,27 @@ def test_truncated_images_are_refused_at_every_length(format_name: str) -> None:
         assert np.array_equal(picture.array, whole)
 
 
-def test_enormous_dimensions_in_a_header_are_refused() -> None:
+def png_of_size(width: int, height: int) -> io.BytesIO:
+    """A PNG whose header claims a size and whose pixels are missing."""
+
     def chunk(tag: bytes, content: bytes) -> bytes:
         checksum = zlib.crc32(tag + content)
         return struct.pack(">I", len(content)) + tag + content + struct.pack(">I", checksum)
 
-    header = struct.pack(">IIBBBBB", 60_000, 60_000, 8, 2, 0, 0, 0)
-    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", b"") + chunk(b"IEND", b"")
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+    return io.BytesIO(b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", b"") + chunk(b"IEND", b""))
+
+
+@pytest.mark.parametrize("size", [(60_000, 60_000), (2**31 - 1, 2**31 - 1)])
+def test_enormous_dimensions_in_a_header_are_refused(size: tuple[int, int]) -> None:
     with pytest.raises(vmesh.LimitError):
-        read_picture(io.BytesIO(data))
+        read_picture(png_of_size(*size))
+
+
+@pytest.mark.parametrize("size", [(0, 0), (0, 5), (5, 0), (70_000, 1)])
+def test_pictures_without_pixels_or_with_too_long_sides_are_refused(size: tuple[int, int]) -> None:
+    with pytest.raises(vmesh.ImageError):
+        read_picture(png_of_size(*size))
 
 
 def test_the_pixel_limit_holds_for_photographs() -> None:

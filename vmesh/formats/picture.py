@@ -55,8 +55,11 @@ def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Pictur
         warnings.simplefilter("ignore", UserWarning)
         image = _open(stream)
         limits.check_pixels(*image.size)
-        if max(image.size) > MAX_SIDE:
-            raise ImageError(f"a picture side of {max(image.size)} pixels is over {MAX_SIDE}")
+        if not 1 <= min(image.size) <= max(image.size) <= MAX_SIDE:
+            width, height = image.size
+            raise ImageError(
+                f"expected a picture of 1 to {MAX_SIDE} pixels a side, got {width} x {height}"
+            )
         try:
             image.load()
             upright = ImageOps.exif_transpose(image)
