@@ -42,7 +42,7 @@ def test_the_first_run_announces_that_it_compiles_and_the_second_does_not(tmp_pa
 
 def test_kernels_work_without_a_writable_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     # What Numba does where it finds no folder to write to.
-    def refuse(**options: bool) -> Any:
+    def refuse(**options: Any) -> Any:
         if options.get("cache"):
             raise RuntimeError("cannot cache function: no locator available")
         return njit(**options)
