@@ -70,7 +70,7 @@ def draw(array: UInt8Array, settings: Settings, show: str) -> UInt8Array:
     original, rendered = flatten(array), flatten(render(mesh))
 
     def points() -> UInt8Array:
-        vertices = samples.vertices()
+        vertices = mesh.vertices
         x, y = np.minimum(vertices // 2, [width - 1, height - 1]).T
         # Saturated class colours: what a sample's plane was, as in the paper's figures.
         classes = samples.classes[y, x]
@@ -81,7 +81,7 @@ def draw(array: UInt8Array, settings: Settings, show: str) -> UInt8Array:
     views: dict[str, tuple[str, Callable[[], UInt8Array]]] = {
         "original": ("original", lambda: original),
         "salience": ("salience", lambda: figure.draw_salience(salience)),
-        "points": (f"{samples.n_points} sample points", points),
+        "points": (f"{mesh.n_vertices} points", points),
         "mesh": (f"{mesh.n_triangles} triangles", lambda: figure.draw_wireframe(mesh)),
         "render": (f"render, {psnr(original, rendered):.2f} dB", lambda: rendered),
         "error": ("error x 4", lambda: figure.draw_error(original, rendered)),

@@ -67,14 +67,14 @@ def fit_colors(
     start = sample_colors(image, vertices, unit)
     whole = np.ones(image.shape[:2])
     if image.shape[2] != 4:
-        return _fit(image, whole, vertices, triangles, unit, start)
+        return fit_components(image, whole, vertices, triangles, unit, start)
     visible = np.maximum(image[:, :, 3] / 255.0, _HIDDEN_WEIGHT)
-    colors = _fit(image[:, :, :3], visible, vertices, triangles, unit, start[:, :3])
-    alpha = _fit(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
+    colors = fit_components(image[:, :, :3], visible, vertices, triangles, unit, start[:, :3])
+    alpha = fit_components(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
     return np.concatenate([colors, alpha], axis=1)
 
 
-def _fit(
+def fit_components(
     image: UInt8Array,
     weights: Float64Array,
     vertices: Int32Array,
@@ -82,7 +82,24 @@ def _fit(
     unit: int,
     start: Float64Array,
 ) -> Float64Array:
-    """Weighted fit of the components of `image`; `weights` has shape (h, w)."""
+    """Colours closest to a picture with a weight for each pixel, each component for itself.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    weights : ndarray
+        Shape (h, w), float64, 0 or more.
+    vertices, triangles, unit
+        As for :func:`fit_colors`.
+    start : ndarray
+        Shape (n, c), float64: where the solution starts, and stays where nothing else decides.
+
+    Returns
+    -------
+    ndarray
+        Shape (n, c), float64, 0 to 255.
+    """
     products = np.zeros((len(triangles), 6))
     moments = np.zeros(start.shape)
     positions = vertices.astype(np.int64) * (SUBPIXEL // unit)

@@ -15,13 +15,14 @@ from vmesh.encoder.colors import fit_colors, sample_colors
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
 from vmesh.encoder.settings import Settings
+from vmesh.encoder.thinning import START_DENSITY, thin_vertices
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import MAX_SIDE, Mesh, Metadata
 
 Progress = Callable[[str], None]
 """Called with the name of each stage as it begins."""
 
-STAGES: Final = ("sampling", "triangulation", "colors", "quantization")
+STAGES: Final = ("sampling", "thinning", "triangulation", "colors", "quantization")
 
 _SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
 
@@ -64,6 +65,13 @@ def encode(
     _, samples = propose(image, chosen)
     vertices = samples.vertices()
 
+    if chosen.method == "adaptive":
+        report("thinning")
+        height, width = image.shape[:2]
+        n_vertices = chosen.n_points(width, height) or len(vertices)
+        visible = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
+        vertices = thin_vertices(visible, vertices, n_vertices)
+
     report("triangulation")
     triangles = delaunay(vertices)
 
@@ -91,7 +99,7 @@ def encode(
 
 
 def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples]:
-    """Salience of a picture and the points sampled from it.
+    """Salience of a picture and the points sampled from it, before any thinning.
 
     Parameters
     ----------
@@ -107,9 +115,12 @@ def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples
     """
     height, width = image.shape[:2]
     salience = compute_salience(visible_planes(image), settings.gamma)
+    n_points = settings.n_points(width, height)
+    if settings.method == "adaptive" and n_points is not None:
+        n_points = max(n_points, round(START_DENSITY * width * height))
     samples = sample(
         salience,
-        n_points=settings.n_points(width, height),
+        n_points=n_points,
         sampler=settings.sampler,
         diffusion=settings.diffusion,
         seed=settings.seed,

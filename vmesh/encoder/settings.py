@@ -7,10 +7,12 @@ from typing import Final, Literal, get_args
 
 from vmesh.color_lattice import MAX_STEP
 
-Method = Literal["blue-noise"]
+Method = Literal["blue-noise", "adaptive"]
 Sampler = Literal["multiclass", "channels"]
 Diffusion = Literal["zhou-fang", "ostromoukhov"]
 ColorMode = Literal["fitted", "sampled"]
+
+_ADAPTIVE_DENSITY: Final = 0.02
 
 _CHOICES: Final = {
     "method": get_args(Method),
@@ -26,15 +28,16 @@ class Settings:
 
     Parameters
     ----------
-    method : {"blue-noise"}
-        How vertices are found.
+    method : {"blue-noise", "adaptive"}
+        How vertices are found: sampled from the salience, or sampled densely and thinned down to
+        those that matter most.
     gamma : float
         Exponent of the salience, above 0; a smaller value gives more points.
     vertices : int, optional
-        Vertices wanted, met within 2 %.
+        Vertices wanted, met within 2 % ("blue-noise") or exactly ("adaptive").
     density : float, optional
         Vertices wanted per pixel, above 0 and up to 1; not together with `vertices`. Without
-        either, `gamma` alone decides.
+        either, `gamma` alone decides ("blue-noise"), or it is 0.02 ("adaptive").
     sampler : {"multiclass", "channels"}
         Colour planes sampled together, no two on one pixel, or each for itself.
     diffusion : {"zhou-fang", "ostromoukhov"}
@@ -84,6 +87,9 @@ class Settings:
 
     def n_points(self, width: int, height: int) -> int | None:
         """Number of vertices wanted for a picture of this size, None to let gamma decide."""
-        if self.density is not None:
-            return max(4, round(self.density * width * height))
+        density = self.density
+        if self.method == "adaptive" and self.vertices is None and density is None:
+            density = _ADAPTIVE_DENSITY
+        if density is not None:
+            return max(4, round(density * width * height))
         return self.vertices
