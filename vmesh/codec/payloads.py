@@ -79,7 +79,7 @@ def decode_levels(
 
 
 def _encode(code: Code) -> bytes:
-    """Bytes that a coding function writes; the room is doubled until they fit."""
+    """Bytes that a coding function writes; where there is too little room it writes twice."""
     room = 1 << 16
     while True:
         coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
@@ -90,7 +90,7 @@ def _encode(code: Code) -> bytes:
         length = entropy.finish(coder, data)
         if coder[entropy.POSITION] <= room:
             return data[:length].tobytes()
-        room *= 2
+        room = int(coder[entropy.POSITION])
 
 
 def _decode(payload: bytes, offset: int, name: str, code: Code) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill
+from vmesh.kernels.scanline import SUBPIXEL, fill, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import MAX_SIDE, Matrix, Mesh, Metadata, Placement
 
@@ -77,10 +77,12 @@ def render(
         factor = np.array(drawn) / (placement.width, placement.height) * SUBPIXEL
         positions = np.rint(placement.move(mesh.points) * factor).astype(np.int64)
     triangles = mesh.triangles if placement.keeps_turn else mesh.triangles[:, ::-1].copy()
-    _check_work(positions, triangles, drawn, limits)
+    doubled_area, n_rows = measure(positions, triangles, drawn[1])
+    limits.check_work(n_rows + drawn[0] * drawn[1])
 
     colors = mesh.colors
-    if not (placement.fills and mesh.covers_canvas):
+    whole = drawn[0] * drawn[1] * SUBPIXEL**2
+    if not placement.fills or doubled_area != 2 * whole:
         colors = with_alpha(colors)
     if supersample == 1:
         raster = np.zeros((rows, columns, colors.shape[1]), dtype=np.uint8)
@@ -167,16 +169,6 @@ def _scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
     numerators = 2 * mesh.vertices.astype(np.int64) * (np.array(size) * SUBPIXEL) + canvas
     positions: Int64Array = numerators // (2 * canvas)
     return positions
-
-
-def _check_work(
-    positions: Int64Array,
-    triangles: Int32Array,
-    size: tuple[int, int],
-    limits: Limits,
-) -> None:
-    heights = np.clip(positions[:, 1] // SUBPIXEL, 0, size[1])[triangles]
-    limits.check_work(int(np.ptp(heights, axis=1).sum()) + len(triangles) + size[0] * size[1])
 
 
 def with_alpha(colors: UInt8Array) -> UInt8Array:

@@ -120,6 +120,30 @@ def spans(
 
 
 @kernel
+def measure(vertices: Int64Array, triangles: Int32Array, height: int) -> tuple[int, int]:
+    """Sum of the doubled signed areas, and number of rows that drawing the triangles visits.
+
+    Parameters
+    ----------
+    vertices, triangles : ndarray
+        As for :func:`fill`.
+    height : int
+        Rows of the raster.
+    """
+    area = 0
+    n_rows = 0
+    for t in range(triangles.shape[0]):
+        i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x1, y1 = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1]
+        x2, y2 = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1]
+        area += x1 * y2 - x2 * y1
+        first = max(row_at(vertices[i, 1] + min(0, y1, y2)), 0)
+        last = min(row_at(vertices[i, 1] + max(0, y1, y2)), height)
+        n_rows += 1 + max(last - first, 0)
+    return area, n_rows
+
+
+@kernel
 def gradient(
     c0: np.int64, c1: np.int64, c2: np.int64, x0: int, y0: int, x1: int, y1: int, x2: int, y2: int
 ) -> tuple[np.int64, np.int64, np.int64]:
