@@ -31,7 +31,7 @@ import vmesh
 from vmesh.arrays import UInt8Array
 from vmesh.codec import layout
 from vmesh.encoder.colors import fit_colors
-from vmesh.encoder.pipeline import visible_planes
+from vmesh.encoder.image import visible_planes
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import sample
 from vmesh.encoder.settings import ColorMode, Method, Sampler, Settings

@@ -9,7 +9,8 @@ from tests.pictures import PICTURES, constant, disc, drawn, grey_ramp, noise, ps
 from vmesh.arrays import UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.pipeline import STAGES, as_image, encode, visible_planes
+from vmesh.encoder.image import as_image, visible_planes
+from vmesh.encoder.pipeline import STAGES, encode
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import MAX_SIDE, Metadata
 
@@ -125,8 +126,11 @@ def test_colors_of_transparent_pixels_do_not_show(
 
 def test_progress_names_the_stages_in_order() -> None:
     stages: list[str] = []
-    encode(noise(8, 8), progress=stages.append)
+    encode(noise(8, 8), method="adaptive", progress=stages.append)
     assert tuple(stages) == STAGES
+    stages.clear()
+    encode(noise(8, 8), progress=stages.append)
+    assert tuple(stages) == tuple(stage for stage in STAGES if stage != "thinning")
 
 
 def test_metadata_travel_with_the_mesh() -> None:

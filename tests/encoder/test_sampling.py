@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vmesh.arrays import UInt8Array, UInt16Array
-from vmesh.encoder.pipeline import visible_planes
+from vmesh.encoder.image import visible_planes
 from vmesh.encoder.salience import ONE, compute_salience
 from vmesh.encoder.sampling import diffusion_tables, sample
 from vmesh.encoder.settings import Diffusion, Sampler

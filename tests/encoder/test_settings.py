@@ -66,3 +66,10 @@ def test_the_number_of_points_follows_from_vertices_or_density() -> None:
     assert Settings(vertices=77).n_points(100, 50) == 77
     assert Settings(density=0.02).n_points(100, 50) == 100
     assert Settings(density=0.02).n_points(2, 2) == 4
+
+
+def test_thinning_starts_from_a_quarter_of_the_pixels_or_from_what_is_wanted() -> None:
+    assert Settings(method="adaptive").n_vertices(100, 50) == 100
+    assert Settings(method="adaptive").n_points(100, 50) == 1250
+    assert Settings(method="adaptive", vertices=77).n_vertices(100, 50) == 77
+    assert Settings(method="adaptive", vertices=3000).n_points(100, 50) == 3000

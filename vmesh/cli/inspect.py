@@ -57,7 +57,8 @@ def draw(array: UInt8Array, settings: Settings, show: str) -> UInt8Array:
     """One view of an encoding, shape (h, w, 3), uint8."""
     import numpy as np
 
-    from vmesh.encoder.pipeline import as_image, encode, propose
+    from vmesh.encoder.image import as_image
+    from vmesh.encoder.pipeline import encode, propose
     from vmesh.formats import figure
     from vmesh.formats.picture import flatten
     from vmesh.formats.raster import render

@@ -1,0 +1,54 @@
+"""The picture as the encoder's stages take it."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import distance_transform_edt
+
+from vmesh.arrays import UInt8Array
+from vmesh.mesh import MAX_SIDE
+
+
+def as_image(array: npt.ArrayLike) -> UInt8Array:
+    """The picture as a contiguous array of shape (h, w, c), uint8, c being 1, 3 or 4."""
+    given = np.asarray(array)
+    if given.dtype != np.uint8:
+        raise TypeError(f"expected a picture of uint8, got {given.dtype}")
+    if given.ndim == 2:
+        given = given[:, :, None]
+    if given.ndim != 3 or given.shape[2] not in (1, 3, 4):
+        raise ValueError(
+            f"expected a picture of shape (h, w), (h, w, 3) or (h, w, 4), got {given.shape}"
+        )
+    height, width = given.shape[:2]
+    if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE):
+        raise ValueError(
+            f"expected a picture of 1 to {MAX_SIDE} pixels a side, got {width} x {height}"
+        )
+    return np.ascontiguousarray(given)
+
+
+def with_hidden_colors_replaced(image: UInt8Array) -> UInt8Array:
+    """The picture with each fully transparent pixel in the colour of the nearest visible one.
+
+    What is hidden there would show where the mesh's alpha reaches a little further than that of
+    the picture. `image` has shape (h, w, c), uint8; only RGBA pictures change.
+    """
+    if image.shape[2] != 4 or image[:, :, 3].all() or not image[:, :, 3].any():
+        return image
+    nearest = distance_transform_edt(
+        image[:, :, 3] == 0, return_distances=False, return_indices=True
+    )
+    filled = image.copy()
+    filled[:, :, :3] = image[:, :, :3][tuple(nearest)]
+    return filled
+
+
+def visible_planes(image: UInt8Array) -> UInt8Array:
+    """Planes of a picture, shape (c, h, w), uint8, colours multiplied by alpha."""
+    planes = np.ascontiguousarray(image.transpose(2, 0, 1))
+    if len(planes) == 4:
+        alpha = planes[3].astype(np.uint16)
+        planes[:3] = (planes[:3] * alpha + 127) // 255
+    return planes
