@@ -30,7 +30,8 @@ def as_faces(triangles: Int32Array) -> list[twins.Face]:
 def swept(vertices: Int32Array, order: Int64Array) -> list[twins.Face]:
     """Triangles of a sweep in a given order."""
     room = np.empty((2 * len(vertices), 3), dtype=np.int32)
-    count = sweep(vertices.astype(np.int64), order, room)
+    cx, cy = vertices.mean(axis=0).tolist()
+    count = sweep(vertices.astype(np.int64), order, cx, cy, room)
     return as_faces(sort_triangles(room[:count], len(vertices)))
 
 

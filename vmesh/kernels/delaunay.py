@@ -176,7 +176,9 @@ def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
 
 
 @kernel
-def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
+def sweep(
+    points: Int64Array, order: Int64Array, cx: float, cy: float, triangles: Int32Array
+) -> int:
     """Number of canonical Delaunay triangles of points, written to `triangles`.
 
     Parameters
@@ -184,7 +186,9 @@ def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
     points : ndarray
         Shape (n, 2), int64, distinct, in raster order, with sides of at most 2**19.
     order : ndarray
-        Shape (n,), int64: the points by their distance from the centre of their bounding box.
+        Shape (n,), int64: the points by their distance from a centre.
+    cx, cy : float
+        The centre.
     triangles : ndarray
         Shape (max(2 n, 1), 3), int32: room for the result, positively oriented.
 
@@ -204,8 +208,6 @@ def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
     hull_prev = np.full(n_points, -1, np.int32)
     n_keys = int(np.ceil(np.sqrt(n_points)))
     hull_hash = np.full(n_keys, -1, np.int32)
-    cx = (points[:, 0].min() + points[:, 0].max()) / 2.0
-    cy = (points[:, 1].min() + points[:, 1].max()) / 2.0
 
     # The first three points that are not on a line. Those passed over lie on the line of the
     # first two, beyond their segment, so they are outside the first triangle as well.
@@ -248,7 +250,7 @@ def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
             if hint >= 0 and hull_next[hint] >= 0:
                 start = hull_prev[hint]
                 break
-        # The first hull edge v -> w that the point sees.
+        # The first hull edge that the point sees, from the hint onwards ...
         v = start
         w = hull_next[v]
         while cross(points[v, 0], points[v, 1], points[w, 0], points[w, 1], px, py) >= 0:
@@ -256,41 +258,29 @@ def sweep(points: Int64Array, order: Int64Array, triangles: Int32Array) -> int:
             w = hull_next[v]
             if v == start:
                 return -1
-        # Triangle (w, v, p).
-        e = n_edges
-        n_edges += 3
-        origin[e], origin[e + 1], origin[e + 2] = w, v, p
-        link(twin, e, hull_edge[v])
-        hull_edge[v] = e + 1
-        hull_edge[p] = e + 2
-        legalize(points, origin, twin, hull_edge, stack, e)
-        # The edges after it that the point sees too.
+        # ... or before it, if the hint was in the midst of those it sees.
+        if v == start:
+            u = hull_prev[v]
+            while cross(points[u, 0], points[u, 1], points[v, 0], points[v, 1], px, py) < 0:
+                v = u
+                u = hull_prev[v]
+        # A triangle (u, w, p) for each edge w -> u that it sees.
+        w = v
         u = hull_next[w]
         while cross(points[w, 0], points[w, 1], points[u, 0], points[u, 1], px, py) < 0:
             e = n_edges
             n_edges += 3
             origin[e], origin[e + 1], origin[e + 2] = u, w, p
             link(twin, e, hull_edge[w])
-            link(twin, e + 1, hull_edge[p])
+            if w == v:
+                hull_edge[w] = e + 1
+            else:
+                link(twin, e + 1, hull_edge[p])
+                hull_next[w] = -1
             hull_edge[p] = e + 2
-            hull_next[w] = -1
             legalize(points, origin, twin, hull_edge, stack, e)
             w = u
             u = hull_next[w]
-        # And those before it, which only a walk that began in their midst can have skipped.
-        if v == start:
-            u = hull_prev[v]
-            while cross(points[u, 0], points[u, 1], points[v, 0], points[v, 1], px, py) < 0:
-                e = n_edges
-                n_edges += 3
-                origin[e], origin[e + 1], origin[e + 2] = v, u, p
-                link(twin, e, hull_edge[u])
-                link(twin, e + 2, hull_edge[v])
-                hull_edge[u] = e + 1
-                hull_next[v] = -1
-                legalize(points, origin, twin, hull_edge, stack, e)
-                v = u
-                u = hull_prev[v]
         hull_next[v], hull_prev[p] = p, v
         hull_next[p], hull_prev[w] = w, p
         hull_hash[key] = p
@@ -360,9 +350,11 @@ def delaunay(vertices: Int32Array) -> Int32Array:
     room = np.empty((max(2 * len(points), 1), 3), dtype=np.int32)
     if len(points) < 3:
         return room[:0]
-    centred = 2 * points - (points.min(axis=0) + points.max(axis=0))
-    order = np.argsort((centred * centred).sum(axis=1))
-    count = sweep(points, order, room)
+    doubled_center = points.min(axis=0) + points.max(axis=0)
+    offsets = 2 * points - doubled_center
+    order = np.argsort((offsets * offsets).sum(axis=1))
+    cx, cy = (doubled_center / 2).tolist()
+    count = sweep(points, order, cx, cy, room)
     if count < 0:
         raise ValueError("two vertices share a position")
     return sort_triangles(room[:count], len(points))

@@ -72,22 +72,26 @@ def solve(
         Shape (n, c), float64.
     """
     n_vertices, n_components = moments.shape
-    inverse = np.full(n_vertices, ridge)
+    inverse = np.empty(n_vertices)
+    x = np.empty(n_vertices)
+    image = np.empty(n_vertices)
+    residual = np.empty(n_vertices)
+    direction = np.empty(n_vertices)
+    solution = np.empty((n_vertices, n_components))
+    for v in range(n_vertices):
+        inverse[v] = ridge
     for t in range(triangles.shape[0]):
         for corner in range(3):
             inverse[triangles[t, corner]] += products[t, corner]
     for v in range(n_vertices):
         inverse[v] = 1.0 / inverse[v]
-    solution = start.copy()
-    image = np.empty(n_vertices)
     for z in range(n_components):
-        x = start[:, z].copy()
+        for v in range(n_vertices):
+            x[v] = start[v, z]
         multiply(triangles, products, ridge, x, image)
-        residual = np.empty(n_vertices)
-        direction = np.empty(n_vertices)
         rho = 0.0
         for v in range(n_vertices):
-            residual[v] = moments[v, z] + ridge * start[v, z] - image[v]
+            residual[v] = moments[v, z] + ridge * x[v] - image[v]
             direction[v] = inverse[v] * residual[v]
             rho += residual[v] * direction[v]
         goal = rho * tolerance * tolerance
@@ -108,5 +112,6 @@ def solve(
             beta = rho / previous
             for v in range(n_vertices):
                 direction[v] = inverse[v] * residual[v] + beta * direction[v]
-        solution[:, z] = x
+        for v in range(n_vertices):
+            solution[v, z] = x[v]
     return solution
