@@ -81,3 +81,19 @@ def test_a_device_is_written_directly() -> None:
     with atomic_output(os.devnull) as stream:
         stream.write(b"new")
     assert Path(os.devnull).is_char_device()
+
+
+def test_a_replaced_file_keeps_its_mode(tmp_path: Path) -> None:
+    target = tmp_path / "file"
+    target.write_bytes(b"old")
+    target.chmod(0o600)
+    with atomic_output(target) as stream:
+        stream.write(b"new")
+    assert target.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_missing_folder_is_told_by_the_name_that_was_given(tmp_path: Path) -> None:
+    target = tmp_path / "none" / "file"
+    with pytest.raises(FileNotFoundError) as caught, atomic_output(target):
+        pass
+    assert caught.value.filename == str(target)

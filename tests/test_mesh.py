@@ -318,3 +318,21 @@ def test_a_mesh_of_delaunay_triangles_covers_its_canvas_at_the_largest_size() ->
     )
     mesh.check()
     mesh.replaced(vertices=vertices * 8, subdivision=3).check()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"triangles": np.array([[0, 1, 10**9], [0, 10**9, 2]])},
+        {"triangles": np.array([[0, 1, -(10**9)], [0, 3, 2]])},
+        {"levels": np.zeros((1, 1), dtype=int)},
+        {"vertices": np.zeros((4, 1), dtype=int)},
+        {"width": 0},
+        {"vertices": np.full((4, 2), 2**31 - 1)},
+    ],
+)
+def test_what_drawing_relies_on_is_checked_when_a_mesh_is_made(changes: dict[str, Any]) -> None:
+    vertices = np.array([[0, 0], [8, 0], [0, 8], [8, 8]])
+    mesh = Mesh.from_colors(8, 8, vertices, [[0, 1, 3], [0, 3, 2]], np.zeros((4, 1), dtype=int))
+    with pytest.raises(ValueError, match=r"expected|outside|does not exist"):
+        mesh.replaced(**changes)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -18,21 +19,26 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     file of that name stays untouched until then, and a failed block leaves nothing behind. A
     device or a pipe is written directly.
     """
-    target = Path(path).resolve()
-    if target.exists() and not target.is_file() and not target.is_dir():
-        with target.open("wb") as stream:
+    named = Path(path)
+    if named.is_dir():
+        raise IsADirectoryError(f"{os.fspath(path)} is a folder")
+    if named.exists() and not named.is_file():
+        with named.open("wb") as stream:
             yield stream
         return
-    if target.is_dir():
-        raise IsADirectoryError(f"{os.fspath(path)} is a folder")
+    target = named.resolve()
     temporary = target.with_name(f".{secrets.token_hex(8)}.part")
     try:
         with temporary.open("xb") as stream:
             yield stream
             stream.flush()
             os.fsync(stream.fileno())
+        if target.exists():
+            temporary.chmod(stat.S_IMODE(target.stat().st_mode))
         temporary.replace(target)
-    except BaseException:
+    except BaseException as error:
+        if isinstance(error, OSError) and error.filename in (None, str(temporary)):
+            error.filename = os.fspath(path)
         with suppress(OSError):
             temporary.unlink()
         raise

@@ -24,9 +24,9 @@ class Limits:
     """
 
     max_pixels: int = 1 << 28
-    max_vertices: int = 1 << 24
+    max_vertices: int = 1 << 22
     max_metadata: int = 1 << 24
-    max_work: int = 1 << 32
+    max_work: int = 1 << 31
 
     def check_pixels(self, width: int, height: int) -> None:
         """Raise :class:`LimitError` if a raster of this size is not allowed."""

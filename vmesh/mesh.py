@@ -27,6 +27,8 @@ MAX_SUBDIVISION: Final = 8
 # With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
 MAX_LATTICE_SIDE: Final = 1 << 19
 
+_LARGEST_ENTRY: Final = 1e9
+
 Matrix = Sequence[float]
 """An affine map ``(a, b, c, d, e, f)`` in SVG's order: x' = a x + c y + e, y' = b x + d y + f."""
 
@@ -102,6 +104,8 @@ class Mesh:
             object.__setattr__(self, name, index(getattr(self, name)))
         for name in ("vertices", "triangles", "levels"):
             object.__setattr__(self, name, _frozen(getattr(self, name), np.int32, name))
+        self._check_header()
+        self._check_arrays()
 
     @classmethod
     def from_colors(
@@ -184,13 +188,14 @@ class Mesh:
     def check(self) -> None:
         """Raise :class:`ValueError` unless this is a mesh that a file may hold.
 
-        The area rule: vertices are distinct, on the canvas and in use, every triangle is positively
+        Shapes, indices and ranges are checked when a mesh is made; this checks its geometry. The
+        area rule: vertices are distinct and in use, every triangle is positively
         oriented, and the areas add up to the canvas. With every inner edge shared by exactly two
         triangles and every other edge on the border, that means that each point of the canvas
         is covered exactly once.
         """
-        self._check_header()
-        self._check_arrays()
+        if np.unique(_position_keys(self.vertices)).size != self.n_vertices:
+            raise ValueError("two vertices share a position")
         self._check_area()
         self._check_edges()
 
@@ -299,8 +304,6 @@ class Mesh:
         far = np.array([self.width, self.height]) * self.unit
         if ((self.vertices < 0) | (self.vertices > far)).any():
             raise ValueError("a vertex lies outside the canvas")
-        if np.unique(_position_keys(self.vertices)).size != self.n_vertices:
-            raise ValueError("two vertices share a position")
         if ((self.triangles < 0) | (self.triangles >= self.n_vertices)).any():
             raise ValueError("a triangle names a vertex that does not exist")
         lowest, highest = self.lattice.level_bounds()
@@ -366,8 +369,10 @@ class Placement:
         fills its box.
         """
         values = np.asarray(matrix, dtype=np.float64)
-        if values.shape != (6,) or not np.isfinite(values).all():
-            raise ValueError(f"expected a matrix of six finite numbers, got {matrix!r}")
+        if values.shape != (6,) or not (np.abs(values) <= _LARGEST_ENTRY).all():
+            raise ValueError(
+                f"expected a matrix of six finite numbers up to {_LARGEST_ENTRY:g}, got {matrix!r}"
+            )
         linear = values[:4].reshape(2, 2).T
         if abs(np.linalg.det(linear)) < 1e-12:
             raise ValueError("the matrix is singular: it would flatten the mesh")

@@ -24,6 +24,7 @@ from vmesh.codec.reader import loads
 from vmesh.codec.writer import dumps
 from vmesh.errors import FormatError, LimitError, VmeshError
 from vmesh.kernels import entropy
+from vmesh.kernels.delaunay import delaunay
 from vmesh.limits import Limits
 
 SAMPLES = (
@@ -334,8 +335,31 @@ def test_limits_are_respected_to_the_unit() -> None:
 
 def test_a_huge_count_is_refused_before_anything_is_allocated() -> None:
     data = with_header(dumps(samples.grey()), width=60_000, height=60_000, n_vertices=2**31)
-    with pytest.raises(LimitError):
+    with pytest.raises(FormatError, match="cannot hold"):
         loads(data)
+
+
+def test_more_pixels_and_vertices_than_allowed_are_refused() -> None:
+    data = with_header(dumps(samples.grey()), width=60_000, height=60_000)
+    with pytest.raises(LimitError, match="pixels"):
+        loads(data)
+    with pytest.raises(LimitError, match="vertices"):
+        loads(dumps(samples.grey()), limits=Limits(max_vertices=4))
+
+
+def test_points_arranged_to_make_the_triangulation_slow_are_refused_in_time() -> None:
+    # On a ray and on an arc beyond it, as the sweep meets them: flips grow with the square.
+    n, side = 12_000, 1 << 19
+    t = np.arange(1, n + 1) / n
+    arc = np.stack([side / 2 + t * side / 2, side / 2 + t * t * side / 8], axis=1)
+    ray = np.stack([side / 2 - t * side / 2 * 0.999, np.full(n, side / 2)], axis=1)
+    corners = [[0, 0], [side, 0], [0, side], [side, side]]
+    points = np.unique(
+        np.concatenate([np.rint(arc), np.rint(ray), corners]).astype(np.int32), axis=0
+    )
+    vertices = np.ascontiguousarray(points[np.lexsort((points[:, 0], points[:, 1]))])
+    with pytest.raises(LimitError, match="flips"):
+        delaunay(vertices)
 
 
 def test_limit_errors_are_not_format_errors() -> None:

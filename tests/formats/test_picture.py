@@ -143,3 +143,22 @@ def test_the_pixel_limit_holds_for_photographs() -> None:
 def test_flattening_lays_pictures_on_white() -> None:
     picture = np.array([[[10, 20, 30, 255], [10, 20, 30, 0]]], dtype=np.uint8)
     assert flatten(picture).tolist() == [[[10, 20, 30], [255, 255, 255]]]
+
+
+def test_exif_that_makes_no_sense_costs_no_picture() -> None:
+    image = Image.fromarray(noise((6, 7, 3)))
+    data = saved(image, "JPEG", exif=b"Exif\0\0MM\0*\0\0\0\x08\xff\xff\x01\x12").getvalue()
+    picture = read_picture(io.BytesIO(data))
+    assert picture.array.shape == (6, 7, 3)
+
+
+def test_programs_are_not_started_for_postscript() -> None:
+    with pytest.raises(vmesh.ImageError):
+        read_picture(io.BytesIO(b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"))
+
+
+def test_the_pixel_limit_is_the_caller_s_and_not_pillow_s() -> None:
+    before = Image.MAX_IMAGE_PIXELS
+    with pytest.raises(vmesh.ImageError, match="damaged"):
+        read_picture(png_of_size(14_000, 14_000))
+    assert before == Image.MAX_IMAGE_PIXELS

@@ -150,3 +150,26 @@ def test_an_unknown_ending_is_refused(mesh: vmesh.Mesh, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"\.png"):
         vmesh.export(mesh, tmp_path / "picture.gif")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])
+@pytest.mark.parametrize("exif", [b"garbage", b"II*\0", b"Exif\0\0" + bytes(70_000)])
+def test_metadata_that_make_no_sense_cost_no_picture(
+    mesh: vmesh.Mesh, suffix: str, exif: bytes, tmp_path: Path
+) -> None:
+    odd = mesh.replaced(metadata=vmesh.Metadata(exif=exif))
+    vmesh.export(odd, tmp_path / f"picture.{suffix}", scale=0.1)
+    with Image.open(tmp_path / f"picture.{suffix}") as image:
+        assert image.size == (60, 40)
+
+
+def test_bands_of_supersampling_count_as_work(mesh: vmesh.Mesh) -> None:
+    limits = vmesh.Limits(max_work=5_000_000)
+    assert vmesh.render(mesh, scale=2, limits=limits).shape == (800, 1200, 3)
+    with pytest.raises(vmesh.LimitError, match="visit"):
+        vmesh.render(mesh, scale=2, supersample=4, limits=limits)
+
+
+def test_formats_with_short_sides_are_refused_in_words() -> None:
+    with pytest.raises(ValueError, match="WEBP holds sides of at most 16383"):
+        write_raster(np.zeros((1, 16_384), dtype=np.uint8), io.BytesIO(), "WEBP")

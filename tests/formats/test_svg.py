@@ -121,3 +121,11 @@ def test_an_unknown_mode_is_refused_and_leaves_no_file(coffee: np.ndarray, tmp_p
     with pytest.raises(ValueError, match="mode"):
         vmesh.export(mesh, tmp_path / "a.svg", mode="round")
     assert not list(tmp_path.iterdir())
+
+
+def test_flat_colors_keep_within_the_limits(coffee: np.ndarray, tmp_path: Path) -> None:
+    mesh = vmesh.encode(coffee, vertices=200)
+    for limits in (vmesh.Limits(max_pixels=1000), vmesh.Limits(max_work=1000)):
+        with pytest.raises(vmesh.LimitError):
+            vmesh.export(mesh, tmp_path / "a.svg", mode="flat", limits=limits)
+    assert not list(tmp_path.iterdir())

@@ -10,6 +10,7 @@ from vmesh.cli.options import limit_options, quiet_option, take_limits
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of, write_mesh
+from vmesh.mesh import MAX_SIDE
 
 
 class MatrixType(click.ParamType[tuple[float, ...]]):
@@ -34,8 +35,8 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 @click.argument("source", metavar="INPUT.vmesh")
 @click.argument("target", metavar="OUTPUT")
 @click.option("--scale", type=click.FloatRange(0, min_open=True), help="Pixels per canvas pixel.")
-@click.option("--width", type=click.IntRange(1), help="Width of the result in pixels.")
-@click.option("--height", type=click.IntRange(1), help="Height of the result in pixels.")
+@click.option("--width", type=click.IntRange(1, MAX_SIDE), help="Width of the result in pixels.")
+@click.option("--height", type=click.IntRange(1, MAX_SIDE), help="Height of the result in pixels.")
 @click.option(
     "--transform",
     type=MatrixType(),

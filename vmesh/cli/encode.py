@@ -42,6 +42,7 @@ def command(source: str, target: str, as_json: bool, quiet: bool, **options: Any
         report("reading")
         picture = read_photograph(source, limits)
         mesh = encode(picture.array, metadata=picture.metadata, progress=report, **asdict(settings))
+        limits.check_vertices(mesh.n_vertices)
         report("writing")
         data = dumps(mesh)
         write_output(target, lambda stream: stream.write(data))

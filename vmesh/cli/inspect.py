@@ -22,6 +22,7 @@ from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of
 if TYPE_CHECKING:
     from vmesh.arrays import UInt8Array
     from vmesh.encoder.settings import Settings
+    from vmesh.limits import Limits
 
 VIEWS = ("salience", "points", "mesh", "render", "error", "sheet")
 
@@ -48,12 +49,12 @@ def command(source: str, target: str, show: str, quiet: bool, **options: Any) ->
         report("reading")
         picture = read_photograph(source, limits)
         report("encoding")
-        drawn = draw(picture.array, settings, show)
+        drawn = draw(picture.array, settings, show, limits)
         report("writing")
         write_output(target, lambda stream: wanted.writer()(drawn, stream, wanted.raster_name))
 
 
-def draw(array: UInt8Array, settings: Settings, show: str) -> UInt8Array:
+def draw(array: UInt8Array, settings: Settings, show: str, limits: Limits) -> UInt8Array:
     """One view of an encoding, shape (h, w, 3), uint8."""
     import numpy as np
 
@@ -68,7 +69,8 @@ def draw(array: UInt8Array, settings: Settings, show: str) -> UInt8Array:
     height, width = image.shape[:2]
     salience, samples = propose(image, settings)
     mesh = encode(array, **asdict(settings))
-    original, rendered = flatten(array), flatten(render(mesh))
+    limits.check_vertices(mesh.n_vertices)
+    original, rendered = flatten(array), flatten(render(mesh, limits=limits))
 
     def points() -> UInt8Array:
         vertices = mesh.vertices

@@ -50,7 +50,9 @@ _ENCODER_OPTIONS = (
         show_default=True,
         help="Vertex colours by least squares, or those of single pixels.",
     ),
-    click.option("--vertices", type=click.IntRange(4), help="Number of vertices, met within 2 %."),
+    click.option(
+        "--vertices", type=click.IntRange(4, 1 << 31), help="Number of vertices, met within 2 %."
+    ),
     click.option(
         "--density",
         type=click.FloatRange(0, 1, min_open=True),

@@ -15,7 +15,7 @@ def show_progress(title: str, n_stages: int, *, quiet: bool) -> Iterator[Report]
 
     Says so when compiled code is not in the cache yet, since the first run then takes longer.
     """
-    if quiet or not sys.stderr.isatty():
+    if quiet or sys.stderr is None or not sys.stderr.isatty():
         yield lambda stage: None
         return
     from rich.console import Console

@@ -24,12 +24,18 @@ STANDARD = "-"
 
 def read_input(path: str) -> bytes:
     """Bytes of a file or of standard input."""
-    return sys.stdin.buffer.read() if path == STANDARD else Path(path).read_bytes()
+    if path != STANDARD:
+        return Path(path).read_bytes()
+    if sys.stdin is None:
+        raise OSError("standard input is closed")
+    return sys.stdin.buffer.read()
 
 
 def write_output(path: str, write: Callable[[BinaryIO], object]) -> None:
     """Let `write` fill a file, which takes its name when it is whole, or standard output."""
     if path == STANDARD:
+        if sys.stdout is None:
+            raise OSError("standard output is closed")
         buffer = io.BytesIO()
         write(buffer)
         sys.stdout.buffer.write(buffer.getvalue())

@@ -34,4 +34,6 @@ def convert(
         else:
             mesh = encode(given.array, metadata=given.metadata, progress=report, **asdict(settings))
         report("writing")
-        write_output(target, lambda stream: write_mesh(mesh, stream, wanted, **options))
+        write_output(
+            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
+        )

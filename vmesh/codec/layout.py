@@ -40,6 +40,10 @@ _CHECKSUM = struct.Struct("<I")
 _HEADER = struct.Struct("<BBHHBBIIB")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]{4}")
 _MAX_LENGTH: Final = (1 << 31) - 1
+# Each level takes a bit at least, which costs 0.0014 bits at the longest odds: 5,677 levels to a
+# byte. With some margin, this refuses a small file that claims a huge mesh before it is decoded.
+_LEVELS_PER_BYTE: Final = 8192
+_COLOR_SLACK: Final = 16
 _MAX_SUBDIVISION: Final = 8
 _MAX_LATTICE_SIDE: Final = 1 << 19
 
@@ -250,6 +254,10 @@ def _header_complaints(header: Header, chunks: list[Chunk]) -> Iterator[str]:
         yield f"expected 4 to {header.columns * header.rows} vertices, got {header.n_vertices}"
     if not 2 <= header.n_triangles <= 2 * header.n_vertices - 6:
         yield f"{header.n_vertices} vertices cannot form {header.n_triangles} triangles"
+    levels = header.n_vertices * header.n_components
+    room = sum(len(chunk.content) for chunk in chunks if chunk.tag == COLORS_TAG)
+    if levels > _LEVELS_PER_BYTE * (room + _COLOR_SLACK):
+        yield f"{room} bytes of colours cannot hold {levels} levels"
     listed = any(chunk.tag == TRIANGLES_TAG for chunk in chunks)
     if header.connectivity not in (IMPLIED_TRIANGLES, LISTED_TRIANGLES):
         yield f"connectivity {header.connectivity} is unknown"

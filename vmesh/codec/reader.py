@@ -31,7 +31,7 @@ def loads(data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMI
     LimitError
         If they are, but ask for more than `limits` allow.
     """
-    chunks = layout.read_chunks(bytes(data))
+    chunks = layout.read_chunks(bytes(memoryview(data)))
     header = layout.read_header(chunks)
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
@@ -63,6 +63,12 @@ def _read_geometry(header: Header, by_tag: dict[bytes, Chunk], metadata: Metadat
     else:
         source = positions
         triangles = delaunay(vertices)
+    if len(triangles) != header.n_triangles:
+        raise FormatError(
+            "geometry",
+            f"expected {header.n_triangles} triangles, got {len(triangles)}",
+            source.content_offset,
+        )
     mesh = Mesh(
         header.width,
         header.height,
@@ -73,12 +79,6 @@ def _read_geometry(header: Header, by_tag: dict[bytes, Chunk], metadata: Metadat
         header.subdivision,
         metadata,
     )
-    if mesh.n_triangles != header.n_triangles:
-        raise FormatError(
-            "geometry",
-            f"expected {header.n_triangles} triangles, got {mesh.n_triangles}",
-            source.content_offset,
-        )
     try:
         mesh.check()
     except ValueError as error:

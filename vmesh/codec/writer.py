@@ -9,6 +9,7 @@ import numpy as np
 
 from vmesh.codec import layout
 from vmesh.codec.payloads import encode_levels, encode_positions, encode_triangles
+from vmesh.errors import LimitError
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
@@ -29,7 +30,7 @@ def dumps(mesh: Mesh) -> bytes:
     """
     mesh.check()
     ordered = mesh.canonical()
-    implied = np.array_equal(delaunay(ordered.vertices), ordered.triangles)
+    implied = _are_implied(ordered)
     header = layout.Header(
         major=layout.MAJOR_VERSION,
         minor=layout.MINOR_VERSION,
@@ -43,6 +44,14 @@ def dumps(mesh: Mesh) -> bytes:
         steps=ordered.lattice.steps,
     )
     return layout.pack_file(_contents(ordered, header))
+
+
+def _are_implied(mesh: Mesh) -> bool:
+    """Whether the triangles of a canonical mesh follow from its vertices."""
+    try:
+        return np.array_equal(delaunay(mesh.vertices), mesh.triangles)
+    except LimitError:
+        return False
 
 
 def _contents(mesh: Mesh, header: layout.Header) -> Iterator[tuple[bytes, bytes]]:

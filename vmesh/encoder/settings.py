@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import index
 from typing import Final, Literal, get_args
 
 from vmesh.color_lattice import MAX_STEP
@@ -72,9 +73,8 @@ class Settings:
                     f"got {getattr(self, name)!r}"
                 )
         for name in ("vertices", "color_step", "seed"):
-            value = getattr(self, name)
-            if not (isinstance(value, int) or (value is None and name == "vertices")):
-                raise TypeError(f"expected {name} to be a whole number, got {value!r}")
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, index(getattr(self, name)))
         if not 0.0 < self.gamma <= 10.0:
             raise ValueError(f"expected a gamma above 0 and up to 10, got {self.gamma}")
         if self.vertices is not None and self.density is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
 from dataclasses import dataclass
 from typing import BinaryIO, Final
@@ -10,11 +11,17 @@ import numpy as np
 from PIL import Image, ImageOps
 
 from vmesh.arrays import UInt8Array
-from vmesh.errors import ImageError, LimitError
+from vmesh.errors import ImageError
 from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import MAX_SIDE, Metadata
 
+# Well-kept decoders of what people have; not those that run other programs, as for PostScript.
+_FORMATS: Final = (
+    *("PNG", "JPEG", "MPO", "WEBP", "AVIF", "TIFF", "GIF", "BMP", "PPM", "JPEG2000"),
+    *("TGA", "ICO", "PCX", "QOI", "SGI", "DIB"),
+)
+_OPENING: Final = threading.Lock()  # Pillow's own limit is a global variable
 _SIXTEEN_BIT: Final = ("I;16", "I;16L", "I;16B", "I;16N", "I")
 _WITH_ALPHA: Final = ("RGBA", "LA", "La", "PA", "RGBa")
 _OPAQUE: Final = ("RGB", "CMYK", "YCbCr", "LAB", "HSV", "RGBX", "P")
@@ -62,22 +69,37 @@ def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Pictur
             )
         try:
             image.load()
-            upright = ImageOps.exif_transpose(image)
+            upright = _upright(image)
             array = _array_of(upright)
-            return Picture(array, _metadata_of(upright, array))
-        except (OSError, ValueError, SyntaxError, EOFError, IndexError, TypeError) as error:
+        except MemoryError:
+            raise
+        except Exception as error:
+            # The decoders of damaged images raise errors of many kinds.
             raise ImageError(f"the image is damaged: {error}") from None
+        return Picture(array, _metadata_of(upright, array))
 
 
 def _open(stream: BinaryIO) -> Image.Image:
-    """The image with its header read."""
+    """The image with its header read; its size is not limited here."""
+    Image.init()
+    formats: list[str] = [name for name in _FORMATS if name in Image.OPEN]
+    with _OPENING:
+        allowed, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+        try:
+            return Image.open(stream, formats=formats)
+        except Exception:
+            # Plug-ins raise errors of many kinds on damaged headers; none of them says more.
+            raise ImageError("not an image in a format that can be read") from None
+        finally:
+            Image.MAX_IMAGE_PIXELS = allowed
+
+
+def _upright(image: Image.Image) -> Image.Image:
+    """The image with its EXIF orientation applied, or as it is if its EXIF makes no sense."""
     try:
-        return Image.open(stream)
-    except Image.DecompressionBombError as error:
-        raise LimitError(str(error)) from None
+        return ImageOps.exif_transpose(image)
     except Exception:
-        # Plug-ins raise errors of many kinds on damaged headers; none of them says more.
-        raise ImageError("not an image in a format that can be read") from None
+        return image
 
 
 def _array_of(image: Image.Image) -> UInt8Array:
@@ -98,11 +120,14 @@ def _metadata_of(image: Image.Image, array: UInt8Array) -> Metadata:
     """What travels along; an ICC profile only if it fits the array's components."""
     profile = image.info.get("icc_profile") or b""
     xmp = image.info.get("xmp") or b""
-    exif = image.getexif()
+    try:
+        exif = image.getexif().tobytes() if len(image.getexif()) else b""
+    except Exception:  # a block that makes no sense is not worth the picture
+        exif = b""
     n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
         icc=profile if fits_icc(profile, n_components) else b"",
-        exif=exif.tobytes() if len(exif) else b"",
+        exif=exif,
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )
 

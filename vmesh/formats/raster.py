@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+from operator import index
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -15,6 +17,7 @@ from vmesh.mesh import MAX_SIDE, Matrix, Mesh, Metadata, Placement
 MAX_SUPERSAMPLE: Final = 16
 
 _BAND_PIXELS: Final = 1 << 22  # drawn at a time when supersampling
+_LONGEST_SIDES: Final = {"JPEG": 65_500, "WEBP": 16_383}
 _WHITE: Final = (255, 255, 255)
 _ICC_SPACES: Final = {1: b"GRAY", 3: b"RGB ", 4: b"RGB "}
 
@@ -62,8 +65,11 @@ def render(
     LimitError
         If the raster or the work is more than `limits` allow.
     """
-    placement = Placement.of(mesh.width, mesh.height, transform or (1, 0, 0, 1, 0, 0))
+    placement = Placement.of(
+        mesh.width, mesh.height, (1, 0, 0, 1, 0, 0) if transform is None else transform
+    )
     columns, rows = _raster_size(placement.width, placement.height, scale, width, height)
+    supersample = index(supersample)
     if not 1 <= supersample <= MAX_SUPERSAMPLE:
         raise ValueError(f"expected a supersampling of 1 to {MAX_SUPERSAMPLE}, got {supersample}")
     limits.check_pixels(columns, rows)
@@ -78,7 +84,8 @@ def render(
         positions = np.rint(placement.move(mesh.points) * factor).astype(np.int64)
     triangles = mesh.triangles if placement.keeps_turn else mesh.triangles[:, ::-1].copy()
     doubled_area, n_rows = measure(positions, triangles, drawn[1])
-    limits.check_work(n_rows + drawn[0] * drawn[1])
+    n_bands = -(-rows // _band_rows(columns, supersample, len(triangles)))
+    limits.check_work(n_rows + drawn[0] * drawn[1] + n_bands * len(triangles))
 
     colors = mesh.colors
     whole = drawn[0] * drawn[1] * SUBPIXEL**2
@@ -115,6 +122,11 @@ def write_raster(
         For JPEG and WebP, 1 to 100.
     """
     image = Image.fromarray(raster)
+    if max(image.size) > _LONGEST_SIDES.get(format_name, MAX_SIDE):
+        raise ValueError(
+            f"{format_name} holds sides of at most {_LONGEST_SIDES[format_name]} pixels, "
+            f"got {image.width} x {image.height}"
+        )
     if format_name == "JPEG" and image.mode == "RGBA":
         opaque = Image.new("RGB", image.size, _WHITE)
         opaque.paste(image, mask=image.getchannel("A"))
@@ -123,11 +135,21 @@ def write_raster(
     if format_name in ("JPEG", "WEBP"):
         options["quality"] = quality
     if metadata is not None:
-        if metadata.exif:
+        if metadata.exif and _takes_exif(format_name, image.mode, metadata.exif):
             options["exif"] = metadata.exif
         if fits_icc(metadata.icc, len(image.getbands())):
             options["icc_profile"] = metadata.icc
     image.save(stream, format_name, **options)
+
+
+def _takes_exif(format_name: str, mode: str, exif: bytes) -> bool:
+    """Whether a format can hold an EXIF block, which may be too long or not make sense."""
+    try:
+        Image.new(mode, (1, 1)).save(io.BytesIO(), format_name, exif=exif)
+    except Exception:
+        # Pillow parses the block, and fails on one that makes no sense with errors of any kind.
+        return False
+    return True
 
 
 def fits_icc(profile: bytes, n_components: int) -> bool:
@@ -145,6 +167,8 @@ def _raster_size(
     """Columns and rows of the result."""
     if scale is not None and (width is not None or height is not None):
         raise ValueError("expected a scale or a size, not both")
+    if max(width or 0, height or 0) > MAX_SIDE:
+        raise ValueError(f"a raster side of more than {MAX_SIDE} pixels was asked for")
     if width is not None and height is not None:
         columns, rows = float(width), float(height)
     elif width is not None:
@@ -180,6 +204,11 @@ def with_alpha(colors: UInt8Array) -> UInt8Array:
     return np.concatenate([rgb, opaque], axis=1)
 
 
+def _band_rows(columns: int, factor: int, n_triangles: int) -> int:
+    """Rows of a band: enough samples that the visit to every triangle does not weigh."""
+    return max(1, max(_BAND_PIXELS, 8 * n_triangles) // (columns * factor * factor))
+
+
 def _supersampled(
     positions: Int64Array,
     triangles: Int32Array,
@@ -190,7 +219,7 @@ def _supersampled(
     """Means over factor x factor samples, drawn in bands of rows; shape (h, w, c)."""
     columns, rows = size
     n_components = colors.shape[1]
-    band_rows = max(1, _BAND_PIXELS // (columns * factor * factor))
+    band_rows = _band_rows(columns, factor, len(triangles))
     result = np.empty((rows, columns, n_components), dtype=np.uint8)
     for first in range(0, rows, band_rows):
         last = min(first + band_rows, rows)

@@ -20,7 +20,8 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill, label
+from vmesh.kernels.scanline import SUBPIXEL, fill, label, measure
+from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
 Mode = Literal["gradient", "flat"]
@@ -31,7 +32,13 @@ _LONGEST_MITER: Final = 0.4  # pixels that a sharp corner may move
 _SMALLEST_RANGE: Final = 0.5  # levels between the ends of a gradient that is worth one
 
 
-def write_svg(mesh: Mesh, stream: BinaryIO | gzip.GzipFile, *, mode: Mode = "gradient") -> None:
+def write_svg(
+    mesh: Mesh,
+    stream: BinaryIO | gzip.GzipFile,
+    *,
+    mode: Mode = "gradient",
+    limits: Limits = DEFAULT_LIMITS,
+) -> None:
     """Write a mesh as an SVG document.
 
     Parameters
@@ -40,12 +47,17 @@ def write_svg(mesh: Mesh, stream: BinaryIO | gzip.GzipFile, *, mode: Mode = "gra
     stream : binary file
     mode : {"gradient", "flat"}
         What fills a triangle: its best linear gradient or its mean colour.
+    limits : Limits
+        What the mesh may ask for; the colours of flat triangles come from a raster.
     """
+    limits.check_vertices(mesh.n_vertices)
     if mode not in get_args(Mode):
         raise ValueError(f"expected mode to be one of {', '.join(get_args(Mode))}, got {mode!r}")
     size = {"width": str(mesh.width), "height": str(mesh.height)}
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
     colors = mesh.colors
+    if mode == "flat":
+        _check_work(mesh, limits)
     outset = _outset(mesh)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
@@ -61,11 +73,21 @@ def write_svg(mesh: Mesh, stream: BinaryIO | gzip.GzipFile, *, mode: Mode = "gra
         _write_layer(document, mesh, colors[:, :3], outset, mode, "g", group)
 
 
-def write_svgz(mesh: Mesh, stream: BinaryIO, *, mode: Mode = "gradient") -> None:
+def write_svgz(
+    mesh: Mesh, stream: BinaryIO, *, mode: Mode = "gradient", limits: Limits = DEFAULT_LIMITS
+) -> None:
     """Write a mesh as a compressed SVG document; as :func:`write_svg`."""
     # No name and no time in the gzip header: the same mesh gives the same bytes.
     with gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as compressed:
-        write_svg(mesh, compressed, mode=mode)
+        write_svg(mesh, compressed, mode=mode, limits=limits)
+
+
+def _check_work(mesh: Mesh, limits: Limits) -> None:
+    """Refuse a raster for flat colours that is larger than what is allowed."""
+    limits.check_pixels(mesh.width, mesh.height)
+    positions = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
+    _, n_rows = measure(positions, mesh.triangles, mesh.height)
+    limits.check_work(2 * (n_rows + mesh.width * mesh.height))
 
 
 def _write_layer(

@@ -35,7 +35,15 @@ from __future__ import annotations
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array
+from vmesh.errors import LimitError
 from vmesh.kernels.jit import kernel
+
+FLIPS_PER_POINT = 64
+FLIPS = 1 << 20
+"""Flips that any triangulation may take, and those for each of its points."""
+
+COINCIDENT = -1
+TOO_MANY_FLIPS = -2
 
 
 @kernel
@@ -131,8 +139,8 @@ def legalize(
     hull_edge: Int32Array,
     stack: Int32Array,
     edge: int,
-) -> None:
-    """Flip until every edge is locally Delaunay again after a point was added.
+) -> int:
+    """Flip until every edge is locally Delaunay again after a point was added; count the flips.
 
     Parameters
     ----------
@@ -143,6 +151,7 @@ def legalize(
     stack : ndarray
         Room for as many edges as the triangulation has triangles: those on it face the new point.
     """
+    n_flips = 0
     size = 1
     stack[0] = edge
     while size > 0:
@@ -155,6 +164,7 @@ def legalize(
         d = origin[f + 2 if f % 3 == 0 else f - 1]
         if must_flip(points, a, origin[e], origin[f], d):
             flip(origin, twin, e)
+            n_flips += 1
             if twin[e] < 0:
                 hull_edge[d] = e
             if twin[f] < 0:
@@ -162,6 +172,7 @@ def legalize(
             stack[size] = e
             stack[size + 1] = f - 2 if f % 3 == 2 else f + 1
             size += 2
+    return n_flips
 
 
 @kernel
@@ -195,7 +206,8 @@ def sweep(
     Returns
     -------
     int
-        0 if all points lie on a line, -1 if two of them coincide.
+        0 if all points lie on a line, COINCIDENT if two are the same, TOO_MANY_FLIPS if the
+        points are arranged so that the number of flips is out of all proportion.
     """
     n_points = points.shape[0]
     if n_points < 3:
@@ -213,7 +225,7 @@ def sweep(
     # first two, beyond their segment, so they are outside the first triangle as well.
     a, b = order[0], order[1]
     if points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]:
-        return -1
+        return COINCIDENT
     seed = 2
     side = 0
     while seed < n_points:
@@ -237,6 +249,7 @@ def sweep(
         hull_hash[pseudo_angle(points[v, 0] - cx, points[v, 1] - cy, n_keys)] = v
     last = c
     n_edges = 3
+    flips_left = FLIPS + FLIPS_PER_POINT * n_points
 
     for i in range(2, n_points):
         if i == seed:
@@ -257,7 +270,7 @@ def sweep(
             v = w
             w = hull_next[v]
             if v == start:
-                return -1
+                return COINCIDENT
         # ... or before it, if the hint was in the midst of those it sees.
         if v == start:
             u = hull_prev[v]
@@ -278,7 +291,9 @@ def sweep(
                 link(twin, e + 1, hull_edge[p])
                 hull_next[w] = -1
             hull_edge[p] = e + 2
-            legalize(points, origin, twin, hull_edge, stack, e)
+            flips_left -= legalize(points, origin, twin, hull_edge, stack, e)
+            if flips_left < 0:
+                return TOO_MANY_FLIPS
             w = u
             u = hull_next[w]
         hull_next[v], hull_prev[p] = p, v
@@ -345,6 +360,9 @@ def delaunay(vertices: Int32Array) -> Int32Array:
     ------
     ValueError
         If two points coincide.
+    LimitError
+        If the points are arranged so that it would take more than FLIPS_PER_POINT edge flips for
+        each: photographs take about four, a hostile file could ask for a number that is squared.
     """
     points = vertices.astype(np.int64)
     room = np.empty((max(2 * len(points), 1), 3), dtype=np.int32)
@@ -355,6 +373,8 @@ def delaunay(vertices: Int32Array) -> Int32Array:
     order = np.argsort((offsets * offsets).sum(axis=1))
     cx, cy = (doubled_center / 2).tolist()
     count = sweep(points, order, cx, cy, room)
-    if count < 0:
+    if count == COINCIDENT:
         raise ValueError("two vertices share a position")
+    if count == TOO_MANY_FLIPS:
+        raise LimitError(f"the triangulation of {len(points)} vertices takes too many edge flips")
     return sort_triangles(room[:count], len(points))
