@@ -194,7 +194,7 @@ class Mesh:
         triangles and every other edge on the border, that means that each point of the canvas
         is covered exactly once.
         """
-        if np.unique(_position_keys(self.vertices)).size != self.n_vertices:
+        if np.unique(raster_keys(self.vertices)).size != self.n_vertices:
             raise ValueError("two vertices share a position")
         self._check_area()
         self._check_edges()
@@ -205,7 +205,7 @@ class Mesh:
         Vertices come in raster order (by y, then x), each triangle starts with its lowest vertex,
         and triangles come in lexicographic order.
         """
-        order = np.argsort(_position_keys(self.vertices), kind="stable")
+        order = np.argsort(raster_keys(self.vertices), kind="stable")
         rank = np.empty(self.n_vertices, dtype=np.int32)
         rank[order] = np.arange(self.n_vertices, dtype=np.int32)
         return self.replaced(
@@ -410,8 +410,8 @@ def sorted_triangles(triangles: npt.NDArray[np.integer]) -> Int32Array:
     return result
 
 
-def _position_keys(vertices: Int32Array) -> Int64Array:
-    """One integer per position, ordered as a raster scan; shape (n,), int64."""
+def raster_keys(vertices: Int32Array) -> Int64Array:
+    """Integers that sort positions of shape (n, 2) in raster order, one for each; (n,), int64."""
     wide = vertices.astype(np.int64)
     keys: Int64Array = (wide[:, 1] << 32) | wide[:, 0]
     return keys

@@ -10,6 +10,7 @@ from vmesh.arrays import Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
+from vmesh.mesh import raster_keys
 
 Code = Callable[[Int64Array, UInt8Array], int]
 """Codes one payload with a coder and its data, in either direction; returns a status."""
@@ -29,7 +30,7 @@ def decode_positions(payload: bytes, offset: int, n: int, columns: int, rows: in
         return _code_positions(coder, data, points, columns, rows)
 
     _decode(payload, offset, "positions", code)
-    result: Int32Array = points[np.argsort((points[:, 1].astype(np.int64) << 32) | points[:, 0])]
+    result: Int32Array = points[np.argsort(raster_keys(points))]
     return result
 
 

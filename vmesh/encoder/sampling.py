@@ -15,6 +15,7 @@ from vmesh.arrays import BoolArray, Int32Array, Int64Array, UInt8Array, UInt16Ar
 from vmesh.encoder.salience import ONE
 from vmesh.encoder.settings import Diffusion, Sampler
 from vmesh.kernels.diffusion import diffuse
+from vmesh.mesh import raster_keys
 
 COUNT_TOLERANCE: Final = 0.01
 """Relative error at which the search for a number of points stops; 0.02 is what is promised."""
@@ -57,8 +58,7 @@ class Samples:
         y, x = np.nonzero(inner(self.classes))
         centres = np.stack([2 * x + 3, 2 * y + 3], axis=1).astype(np.int32)
         points = np.concatenate([centres, self.border])
-        order = np.argsort((points[:, 1].astype(np.int64) << 32) | points[:, 0])
-        result: Int32Array = points[order]
+        result: Int32Array = points[np.argsort(raster_keys(points))]
         return result
 
 
