@@ -10,7 +10,7 @@ import pytest
 from lxml import etree
 
 import vmesh
-from tests.formats.renderers import SVG_RENDERERS
+from tests.formats.renderers import PDF_RENDERERS, SVG_RENDERERS
 from vmesh.formats.picture import flatten
 from vmesh.metrics import psnr
 
@@ -80,6 +80,23 @@ def test_grey_and_alpha_are_drawn(
     vmesh.export(mesh, path)
     drawn = SVG_RENDERERS[renderer](path, 1)
     assert psnr(drawn, flatten(vmesh.render(mesh))) >= 40.0
+
+
+@pytest.mark.parametrize("suffix", ["svg", "pdf"])
+@pytest.mark.parametrize("components", [1, 3, 4])
+def test_nothing_is_drawn_beyond_a_tilted_mesh(
+    chelsea: np.ndarray, components: int, suffix: str, tmp_path: Path
+) -> None:
+    opaque = np.dstack([chelsea, np.full(chelsea.shape[:2], 255, dtype=np.uint8)])
+    picture = chelsea[:, :, 0] if components == 1 else opaque[:, :, :components]
+    tilted = vmesh.encode(picture, vertices=500).transform((0.8, 0.6, -0.6, 0.8, 0, 0))
+    path = tmp_path / f"tilted.{suffix}"
+    vmesh.export(tilted, path)
+    renderer = SVG_RENDERERS["librsvg"] if suffix == "svg" else PDF_RENDERERS["poppler"]
+    drawn = renderer(path, 1)
+    outside = vmesh.render(tilted)[:, :, 3] == 0
+    assert (drawn[:10, :10] == 255).all()
+    assert (drawn[outside] == 255).all(axis=1).mean() > 0.97
 
 
 def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[str, Path]) -> None:

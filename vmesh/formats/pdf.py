@@ -32,7 +32,7 @@ def write_pdf(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) 
     surface = cairocffi.PDFSurface(buffer, mesh.width, mesh.height)
     surface.set_metadata(cairocffi.PDF_METADATA_CREATE_DATE, _CREATION_DATE)
     context = cairocffi.Context(surface)
-    if mesh.n_components != 4:
+    if mesh.n_components != 4 and mesh.covers_canvas:
         # Shows where a viewer leaves the outermost row of pixels partly uncovered.
         context.set_source_rgb(*(mesh.colors.mean(axis=0) / 255.0 * np.ones(3)))
         context.paint()

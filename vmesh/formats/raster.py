@@ -78,7 +78,7 @@ def render(
         raise ValueError(f"a raster side of {max(drawn)} samples is more than {MAX_SIDE}")
 
     if transform is None:
-        positions = _scaled_positions(mesh, drawn)
+        positions = scaled_positions(mesh, drawn)
     else:
         factor = np.array(drawn) / (placement.width, placement.height) * SUBPIXEL
         positions = np.rint(placement.move(mesh.points) * factor).astype(np.int64)
@@ -187,7 +187,7 @@ def _raster_size(
     return max(1, round(columns)), max(1, round(rows))
 
 
-def _scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
+def scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
     """Vertices in 1/256 pixel of a raster that shows the whole canvas, shape (n, 2), int64."""
     canvas = np.array([mesh.width, mesh.height], dtype=np.int64) * mesh.unit
     numerators = 2 * mesh.vertices.astype(np.int64) * (np.array(size) * SUBPIXEL) + canvas
