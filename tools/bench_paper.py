@@ -29,7 +29,7 @@ from scipy.spatial import Delaunay
 
 import vmesh
 from vmesh.arrays import UInt8Array
-from vmesh.codec import layout
+from vmesh.codec.reader import measure
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.image import visible_planes
 from vmesh.encoder.salience import compute_salience
@@ -325,8 +325,8 @@ def count_bits(pixels: UInt8Array, density: float) -> tuple[float, float, float]
     """Bits per vertex of the positions, the colors and the whole file."""
     mesh = vmesh.encode(pixels, density=density)
     data = vmesh.dumps(mesh)
-    sizes = {chunk.tag: chunk.size for chunk in layout.read_chunks(data)}
-    parts = (sizes[layout.POSITIONS_TAG], sizes[layout.COLORS_TAG], len(data))
+    _, sizes = measure(data)
+    parts = (sizes["positions"], sizes["colors"], len(data))
     positions, colors, whole = (8 * part / mesh.n_vertices for part in parts)
     return positions, colors, whole
 

@@ -1,10 +1,16 @@
-"""What a caller allows a file or a request to cost."""
+"""What the format allows a mesh to be, and what a caller allows a file or a request to cost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from vmesh.errors import LimitError
+
+MAX_SIDE: Final = 65_535
+MAX_SUBDIVISION: Final = 8
+# With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
+MAX_LATTICE_SIDE: Final = 1 << 19
 
 
 @dataclass(frozen=True, slots=True)

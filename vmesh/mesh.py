@@ -21,11 +21,9 @@ import numpy.typing as npt
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
-
-MAX_SIDE: Final = 65_535
-MAX_SUBDIVISION: Final = 8
-# With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
-MAX_LATTICE_SIDE: Final = 1 << 19
+from vmesh.limits import MAX_LATTICE_SIDE as MAX_LATTICE_SIDE
+from vmesh.limits import MAX_SIDE as MAX_SIDE
+from vmesh.limits import MAX_SUBDIVISION as MAX_SUBDIVISION
 
 _LARGEST_ENTRY: Final = 1e9
 
@@ -40,8 +38,8 @@ class Metadata:
     Parameters
     ----------
     icc, exif, xmp : bytes
-        ICC profile, EXIF block (its orientation already applied to the picture) and XMP packet,
-        empty if there is none.
+        ICC profile, EXIF block from its TIFF header on (its orientation already applied to the
+        picture) and XMP packet, empty if there is none.
     unknown : tuple of (bytes, bytes)
         Tag and content of ancillary chunks that this version does not know: kept as they are.
     """

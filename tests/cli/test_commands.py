@@ -140,13 +140,31 @@ def test_info_lists_the_parts_of_a_file(file: Path) -> None:
     mesh = vmesh.load(file)
     assert (figures["width"], figures["height"]) == (600, 400)
     assert figures["vertices"] == mesh.n_vertices
-    assert figures["triangles"] == mesh.n_triangles
-    parts = figures["parts"]
-    assert [part["tag"] for part in parts] == ["HEAD", "VERT", "COLR", "DONE"]
-    assert sum(part["bytes"] for part in parts) == figures["bytes"] - len(layout.SIGNATURE)
+    assert figures["color_steps"] == list(mesh.lattice.steps)
+    parts = {part["part"]: part["bytes"] for part in figures["parts"]}
+    assert parts == {"frame": 27, "mesh": file.stat().st_size - 27}
     text = succeed("info", file).decode()
     assert "bits per vertex" in text
     assert str(mesh.n_vertices) in text
+
+
+def test_info_decodes_the_mesh_if_asked_to(file: Path) -> None:
+    figures = json.loads(succeed("info", file, "--parts", "--json"))
+    mesh = vmesh.load(file)
+    assert figures["triangles"] == mesh.n_triangles
+    parts = {part["part"]: part["bytes"] for part in figures["parts"]}
+    assert list(parts) == ["frame", "positions", "colors"]
+    assert sum(parts.values()) == figures["bytes"] == file.stat().st_size
+    assert f"{mesh.n_triangles} triangles" in succeed("info", file, "--parts").decode()
+
+
+def test_info_names_metadata(file: Path, tmp_path: Path) -> None:
+    metadata = vmesh.Metadata(exif=b"II*\0", xmp=b"<x/>", unknown=((b"n", b"text"),))
+    described = tmp_path / "described.vmesh"
+    vmesh.dump(vmesh.load(file).replaced(metadata=metadata), described)
+    parts = json.loads(succeed("info", described, "--json"))["parts"]
+    assert [part["part"] for part in parts] == ["frame", "exif", "xmp", "n", "mesh"]
+    assert parts[3]["bytes"] == 4
 
 
 @pytest.mark.parametrize("show", ["salience", "points", "mesh", "render", "error", "sheet"])
@@ -261,11 +279,10 @@ def test_wrong_usage_has_status_two(arguments: tuple[str | Path, ...]) -> None:
 
 
 def test_a_newer_version_is_told(file: Path, tmp_path: Path) -> None:
-    chunks = [(chunk.tag, chunk.content) for chunk in layout.read_chunks(file.read_bytes())]
-    head = bytearray(chunks[0][1])
-    head[0] = 7
+    data = bytearray(file.read_bytes())
+    data[len(layout.SIGNATURE)] = 0x70
     newer = tmp_path / "newer.vmesh"
-    newer.write_bytes(layout.pack_file([(b"HEAD", bytes(head)), *chunks[1:]]))
+    newer.write_bytes(data)
     for command in ("decode", "to-svg"):
         suffix = {"decode": "png", "to-svg": "svg"}[command]
         assert "version 7.0" in fail(1, command, newer, tmp_path / f"out.{suffix}")

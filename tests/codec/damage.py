@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 import zlib
 from collections.abc import Iterable
 
@@ -10,62 +9,104 @@ import numpy as np
 
 Content = tuple[bytes, bytes]
 
-SIGNATURE_SIZE = 8
-# Width and place in HEAD of every field of a fixed size.
-HEADER_FIELDS = {
-    "major": (0, "<B"),
-    "minor": (1, "<B"),
-    "width": (2, "<H"),
-    "height": (4, "<H"),
-    "subdivision": (6, "<B"),
-    "n_components": (7, "<B"),
-    "n_vertices": (8, "<I"),
-    "n_triangles": (12, "<I"),
-    "connectivity": (16, "<B"),
-}
-STEPS_OFFSET = 17
+SIGNATURE = b"\x8bVM\r\n"
+# The fields of a header, in order; one byte for each step follows them.
+HEADER_FIELDS = ("version", "format", "width", "height", "n_vertices")
+# First bit and number of bits of the fields that share the byte `format`.
+FORMAT_FIELDS = {"components": (0, 2), "subdivision": (2, 4), "connectivity": (6, 2)}
 
 
-def contents_of(data: bytes) -> list[Content]:
-    """Tag and content of every chunk, without any check."""
+def varint(number: int) -> bytes:
+    """A number of 0 or more in groups of seven bits, in the shortest form."""
+    groups = [number >> shift & 127 for shift in range(0, max(number.bit_length(), 1), 7)]
+    return bytes([*(group | 128 for group in groups[:-1]), groups[-1]])
+
+
+def padded(number: int) -> bytes:
+    """A number as a varint that is a byte longer than it need be."""
+    short = varint(number)
+    return bytes([*short[:-1], short[-1] | 128, 0])
+
+
+def split_varint(data: bytes, offset: int) -> tuple[int, int]:
+    """A number, and the offset after it."""
+    end = offset
+    while data[end] & 128:
+        end += 1
+    return sum((data[i] & 127) << 7 * (i - offset) for i in range(offset, end + 1)), end + 1
+
+
+def checked(data: bytes) -> bytes:
+    """Bytes and their checksum."""
+    return data + zlib.crc32(data).to_bytes(4, "little")
+
+
+def split(data: bytes) -> tuple[bytes, list[Content]]:
+    """The header of a file without signature and checksum, and its chunks, without any check."""
+    offset = len(SIGNATURE) + 2
+    for _ in range(3):
+        _, offset = split_varint(data, offset)
+    offset += (data[len(SIGNATURE) + 1] & 3) + 1
+    header = data[len(SIGNATURE) : offset]
+    offset += 4
     contents = []
-    offset = SIGNATURE_SIZE
     while offset < len(data):
-        tag, length = struct.unpack_from("<4sI", data, offset)
-        contents.append((tag, data[offset + 8 : offset + 8 + length]))
-        offset += 12 + length
-    return contents
+        tag = data[offset : offset + 1]
+        length, start = split_varint(data, offset + 1)
+        contents.append((tag, data[start : start + length]))
+        offset = start + length + 4
+    return header, contents
 
 
-def file_of(contents: Iterable[Content], signature: bytes = b"\x8bVMS\r\n\x1a\n") -> bytes:
-    """A file of chunks, whatever they are, with the right checksums."""
-    data = signature
-    for tag, content in contents:
-        framed = tag + struct.pack("<I", len(content)) + content
-        data += framed + struct.pack("<I", zlib.crc32(framed))
-    return data
+def chunk_of(tag: bytes, content: bytes) -> bytes:
+    """A chunk, whatever it is, with the right checksum."""
+    return checked(tag + varint(len(content)) + content)
+
+
+def file_of(header: bytes, contents: Iterable[Content], signature: bytes = SIGNATURE) -> bytes:
+    """A file of a header and chunks, whatever they are, with the right checksums."""
+    chunks = b"".join(chunk_of(tag, content) for tag, content in contents)
+    return checked(signature + header) + chunks
 
 
 def with_content(data: bytes, tag: bytes, content: bytes) -> bytes:
     """The file with the content of one chunk replaced."""
-    return file_of((t, content if t == tag else c) for t, c in contents_of(data))
+    header, contents = split(data)
+    return file_of(header, [(t, content if t == tag else c) for t, c in contents])
 
 
-def with_header(data: bytes, **values: int) -> bytes:
-    """The file with fields of its header replaced."""
-    header = bytearray(dict(contents_of(data))[b"HEAD"])
-    for name, value in values.items():
-        offset, code = HEADER_FIELDS[name]
-        struct.pack_into(code, header, offset, value)
-    return with_content(data, b"HEAD", bytes(header))
+def header_fields(data: bytes) -> dict[str, int]:
+    """Fields of the header by name, its steps left out."""
+    header, _ = split(data)
+    values, offset = [header[0], header[1]], 2
+    for _ in range(3):
+        value, offset = split_varint(header, offset)
+        values.append(value)
+    fields = dict(zip(HEADER_FIELDS, values, strict=True))
+    for name, (first, size) in FORMAT_FIELDS.items():
+        fields[name] = fields["format"] >> first & (1 << size) - 1
+    return fields
+
+
+def with_header(data: bytes, steps: bytes | None = None, /, **values: int) -> bytes:
+    """The file with its steps or fields of its header replaced."""
+    header, contents = split(data)
+    own_steps = header[len(header) - header_fields(data)["components"] - 1 :]
+    fields = {**header_fields(data), **values}
+    if "format" not in values:
+        fields["format"] = sum(fields[name] << first for name, (first, _) in FORMAT_FIELDS.items())
+    numbers = b"".join(varint(fields[name]) for name in HEADER_FIELDS[2:])
+    changed = bytes([fields["version"], fields["format"]]) + numbers
+    return file_of(changed + (own_steps if steps is None else steps), contents)
 
 
 def mutant(data: bytes, random: np.random.Generator) -> bytes:
-    """The file with a few random changes of its contents, and the checksums repaired."""
-    contents = contents_of(data)
+    """The file with a few random changes of its header and contents, the checksums repaired."""
+    header, contents = split(data)
+    blocks = [(b"", header), *contents]
     for _ in range(random.integers(1, 4)):
-        at = int(random.integers(len(contents)))
-        tag, content = contents[at]
+        at = int(random.integers(len(blocks)))
+        tag, content = blocks[at]
         changed = bytearray(content)
         place = int(random.integers(len(changed) + 1))
         action = random.integers(8)
@@ -77,8 +118,8 @@ def mutant(data: bytes, random: np.random.Generator) -> bytes:
             changed[place:place] = random.bytes(int(random.integers(1, 5)))
         elif action == 6:
             del changed[place : place + int(random.integers(1, 5))]
-        elif random.integers(8) == 0:
-            contents.insert(at, contents[int(random.integers(len(contents)))])
+        elif random.integers(8) == 0 and at > 0:
+            blocks.insert(at, blocks[int(random.integers(1, len(blocks)))])
             continue
-        contents[at] = (tag, bytes(changed))
-    return file_of(contents)
+        blocks[at] = (tag, bytes(changed))
+    return file_of(blocks[0][1], blocks[1:])

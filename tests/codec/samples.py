@@ -39,5 +39,5 @@ def listed() -> Mesh:
 
 
 def with_metadata() -> Mesh:
-    blocks = Metadata(b"profile" * 20, b"exif\0\1", b"<x:xmpmeta/>", ((b"note", b"hello"),))
+    blocks = Metadata(b"profile" * 20, b"exif\0\1", b"<x:xmpmeta/>", ((b"n", b"hello"),))
     return grey().replaced(metadata=blocks)

@@ -77,6 +77,7 @@ def test_exif_orientation_is_applied_and_not_kept(orientation: int) -> None:
         8: np.rot90(array),
     }[orientation]
     assert np.array_equal(picture.array, upright)
+    assert picture.metadata.exif[:2] in (b"II", b"MM")
     kept = Image.Exif()
     kept.load(picture.metadata.exif)
     assert kept.get(0x0112, 1) == 1

@@ -163,6 +163,17 @@ def test_metadata_that_make_no_sense_cost_no_picture(
         assert image.size == (60, 40)
 
 
+@pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])
+def test_exif_is_written_into_every_format(mesh: vmesh.Mesh, suffix: str, tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif[0x010E] = "a description"
+    block = exif.tobytes().removeprefix(b"Exif\0\0")
+    described = mesh.replaced(metadata=vmesh.Metadata(exif=block))
+    vmesh.export(described, tmp_path / f"picture.{suffix}", scale=0.1)
+    with Image.open(tmp_path / f"picture.{suffix}") as image:
+        assert image.getexif()[0x010E] == "a description"
+
+
 def test_bands_of_supersampling_count_as_work(mesh: vmesh.Mesh) -> None:
     limits = vmesh.Limits(max_work=5_000_000)
     assert vmesh.render(mesh, scale=2, limits=limits).shape == (800, 1200, 3)

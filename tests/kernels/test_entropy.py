@@ -8,14 +8,7 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.strategies import lattices, meshes, point_sets
 from vmesh.arrays import Int32Array, UInt8Array
-from vmesh.codec.payloads import (
-    decode_levels,
-    decode_positions,
-    decode_triangles,
-    encode_levels,
-    encode_positions,
-    encode_triangles,
-)
+from vmesh.codec.payloads import Decoder, encode
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
@@ -129,23 +122,23 @@ def test_sizes_come_back(sizes: list[int]) -> None:
 @given(point_sets())
 def test_positions_come_back_in_raster_order(drawn: tuple[int, int, Int32Array]) -> None:
     columns, rows, points = drawn
-    payload = encode_positions(points[::-1].copy(), columns, rows)
-    assert np.array_equal(decode_positions(payload, 0, len(points), columns, rows), points)
+    payload = encode(lambda encoder: encoder.positions(points[::-1].copy(), columns, rows))
+    assert np.array_equal(Decoder(payload, 0).positions(len(points), columns, rows), points)
 
 
 def test_a_full_lattice_takes_no_bytes() -> None:
     y, x = np.mgrid[:13, :9]
     points = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
-    payload = encode_positions(points, 9, 13)
+    payload = encode(lambda encoder: encoder.positions(points, 9, 13))
     assert payload == b""
-    assert np.array_equal(decode_positions(payload, 0, 117, 9, 13), points)
+    assert np.array_equal(Decoder(payload, 0).positions(117, 9, 13), points)
 
 
 def test_positions_of_the_largest_lattice_come_back() -> None:
     side = (1 << 19) + 1
     points = np.array([(0, 0), (side - 1, 0), (0, side - 1), (side - 1, side - 1)], dtype=np.int32)
-    payload = encode_positions(points, side, side)
-    assert np.array_equal(decode_positions(payload, 0, 4, side, side), points)
+    payload = encode(lambda encoder: encoder.positions(points, side, side))
+    assert np.array_equal(Decoder(payload, 0).positions(4, side, side), points)
 
 
 @given(st.binary(max_size=60), st.integers(1, 50), st.integers(1, 50), st.integers(1, 40))
@@ -154,7 +147,7 @@ def test_any_bytes_are_distinct_positions_on_the_lattice_or_refused(
 ) -> None:
     n = min(n, columns * rows)
     try:
-        points = decode_positions(payload, 7, n, columns, rows)
+        points = Decoder(payload, 7).positions(n, columns, rows)
     except FormatError as error:
         assert error.code == "positions"
         return
@@ -165,8 +158,8 @@ def test_any_bytes_are_distinct_positions_on_the_lattice_or_refused(
 
 @given(meshes())
 def test_triangles_come_back(mesh: Mesh) -> None:
-    payload = encode_triangles(mesh.triangles, mesh.n_vertices)
-    result = decode_triangles(payload, 0, mesh.n_triangles, mesh.n_vertices)
+    payload = encode(lambda encoder: encoder.triangles(mesh.triangles, mesh.n_vertices))
+    result = Decoder(payload, 0).triangles(mesh.n_triangles, mesh.n_vertices)
     assert np.array_equal(result, mesh.triangles)
 
 
@@ -175,7 +168,7 @@ def test_any_bytes_are_triangles_of_known_vertices_or_refused(
     payload: bytes, m: int, n_vertices: int
 ) -> None:
     try:
-        triangles = decode_triangles(payload, 7, m, n_vertices)
+        triangles = Decoder(payload, 7).triangles(m, n_vertices)
     except FormatError as error:
         assert error.code == "triangles"
         assert 7 <= error.offset <= 7 + len(payload)
@@ -186,8 +179,10 @@ def test_any_bytes_are_triangles_of_known_vertices_or_refused(
 
 @given(meshes())
 def test_levels_come_back(mesh: Mesh) -> None:
-    payload = encode_levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
-    result = decode_levels(payload, 0, mesh.vertices, mesh.triangles, mesh.lattice)
+    payload = encode(
+        lambda encoder: encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
+    )
+    result = Decoder(payload, 0).levels(mesh.vertices, mesh.triangles, mesh.lattice)
     assert np.array_equal(result, mesh.levels)
 
 
@@ -195,8 +190,10 @@ def test_levels_come_back(mesh: Mesh) -> None:
 def test_extreme_levels_come_back(mesh: Mesh, parity: int) -> None:
     bounds = np.stack(mesh.lattice.level_bounds())
     levels = bounds[(np.arange(mesh.n_vertices) + parity) % 2]
-    payload = encode_levels(levels, mesh.vertices, mesh.triangles, mesh.lattice)
-    result = decode_levels(payload, 0, mesh.vertices, mesh.triangles, mesh.lattice)
+    payload = encode(
+        lambda encoder: encoder.levels(levels, mesh.vertices, mesh.triangles, mesh.lattice)
+    )
+    result = Decoder(payload, 0).levels(mesh.vertices, mesh.triangles, mesh.lattice)
     assert np.array_equal(result, levels)
 
 
@@ -205,7 +202,7 @@ def test_any_bytes_are_levels_within_bounds_or_refused(
     mesh: Mesh, lattice: ColorLattice, payload: bytes
 ) -> None:
     try:
-        levels = decode_levels(payload, 7, mesh.vertices, mesh.triangles, lattice)
+        levels = Decoder(payload, 7).levels(mesh.vertices, mesh.triangles, lattice)
     except FormatError as error:
         assert error.code == "colors"
         return
@@ -218,10 +215,10 @@ def test_a_payload_longer_than_the_first_buffer_is_written_whole() -> None:
     random = np.random.default_rng(6)
     sites = random.choice(1 << 20, 200_000, replace=False)
     points = np.stack([sites % 1024, sites // 1024], axis=1).astype(np.int32)
-    payload = encode_positions(points, 1024, 1024)
+    payload = encode(lambda encoder: encoder.positions(points, 1024, 1024))
     assert len(payload) > 1 << 16
     expected = points[np.argsort(sites)]
-    assert np.array_equal(decode_positions(payload, 0, 200_000, 1024, 1024), expected)
+    assert np.array_equal(Decoder(payload, 0).positions(200_000, 1024, 1024), expected)
 
 
 def test_the_writer_never_writes_beyond_its_room() -> None:

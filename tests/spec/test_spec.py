@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import struct
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,9 +14,20 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import vmesh
+from tests.codec.damage import (
+    SIGNATURE,
+    checked,
+    chunk_of,
+    file_of,
+    padded,
+    split,
+    varint,
+    with_header,
+)
 from vmesh.codec import layout
-from vmesh.codec.payloads import encode_triangles
-from vmesh.color_lattice import MAX_STEP
+from vmesh.codec.payloads import Encoder, encode
+from vmesh.codec.reader import measure
+from vmesh.color_lattice import MAX_STEP, ColorLattice
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.scanline import SUBPIXEL, cover, fill
@@ -27,7 +37,6 @@ _ROOT: Final = Path(__file__).parents[2]
 _TEXT: Final = (_ROOT / "spec" / "vmesh.md").read_text(encoding="utf-8")
 
 Decoded = dict[str, Any]
-Chunks = list[tuple[bytes, bytes]]
 
 
 def blocks(language: str) -> list[str]:
@@ -136,7 +145,7 @@ def grid(side: int) -> Mesh:
 
 
 _METADATA: Final = Metadata(
-    icc=b"profile" * 40, exif=b"Exif\0\0", xmp=b"<x/>", unknown=((b"note", b""), (b"note", b"\0"))
+    icc=b"profile" * 40, exif=b"II*\0", xmp=b"<x/>", unknown=((b"n", b""), (b"n", b"\0"))
 )
 
 MESHES: Final[dict[str, Callable[[], Mesh]]] = {
@@ -174,7 +183,7 @@ def assert_same_mesh(decoded: Decoded, mesh: Mesh) -> None:
     assert np.array_equal(decoded["vertices"], mesh.vertices)
     assert np.array_equal(decoded["triangles"], mesh.triangles)
     assert np.array_equal(decoded["colors"], mesh.colors)
-    known = ("iccp", mesh.metadata.icc), ("exif", mesh.metadata.exif), ("xmpp", mesh.metadata.xmp)
+    known = ("i", mesh.metadata.icc), ("e", mesh.metadata.exif), ("x", mesh.metadata.xmp)
     unknown = [(tag.decode(), content) for tag, content in mesh.metadata.unknown]
     assert decoded["metadata"] == [(tag, block) for tag, block in known if block] + unknown
 
@@ -214,28 +223,44 @@ def test_each_centre_is_in_the_same_triangle_by_specification_and_library(name: 
 
 def test_the_flipped_meshes_have_listed_triangles_and_the_others_do_not() -> None:
     for name, make in MESHES.items():
-        tags = [chunk.tag for chunk in layout.read_chunks(vmesh.dumps(make()))]
-        assert (layout.TRIANGLES_TAG in tags) == name.startswith("listed"), name
+        _, sizes = measure(vmesh.dumps(make()))
+        assert ("triangles" in sizes) == name.startswith("listed"), name
 
 
 def test_the_encoder_of_the_specification_writes_the_bytes_of_the_library() -> None:
     random = np.random.default_rng(7)
     contexts = random.integers(0, 5, 3000).tolist()
     bits = (random.random(3000) < np.array([0.5, 0.99, 0.01, 0.9, 0.0])[contexts]).tolist()
-    encoder = SPEC["RangeEncoder"]()
-    coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
-    data = np.zeros(4096, dtype=np.uint8)
+    by_specification = SPEC["RangeEncoder"]()
     odds = entropy.fresh_odds(5)
-    entropy.start(coder, data, 0)
-    for context, bit in zip(contexts, bits, strict=True):
-        encoder.bit(int(bit), context)
-        entropy.code_bit(coder, data, odds, context, int(bit))
-    payload = encoder.payload()
 
-    assert payload == data[: entropy.finish(coder, data)].tobytes()
-    decoder = SPEC["RangeDecoder"](payload, "bits")
+    def write(encoder: Encoder) -> None:
+        for context, bit in zip(contexts, bits, strict=True):
+            entropy.code_bit(encoder.coder, encoder.data, odds, context, int(bit))
+
+    for context, bit in zip(contexts, bits, strict=True):
+        by_specification.bit(int(bit), context)
+    content = by_specification.content()
+
+    assert content == encode(write)
+    decoder = SPEC["RangeDecoder"](content)
     assert [decoder.bit(context) for context in contexts] == bits
     decoder.end()
+
+
+def test_both_encoders_cut_no_more_than_four_zeros() -> None:
+    # Ones keep the low end of the interval at 0; a hundred halvings shift it by twelve bytes.
+    by_specification = SPEC["RangeEncoder"]()
+    odds = entropy.fresh_odds(100)
+
+    def write(encoder: Encoder) -> None:
+        for context in range(100):
+            entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+
+    for context in range(100):
+        by_specification.bit(1, context)
+
+    assert by_specification.content() == encode(write) == bytes(12)
 
 
 # Section 15: the dumps.
@@ -285,7 +310,7 @@ def test_the_bits_of_the_annotated_file_are_as_stated(monkeypatch: pytest.Monkey
 
     def record(decoder: Any, *context: object) -> int:
         bit: int = read_bit(decoder, *context)
-        bits[decoder.name] += str(bit)
+        bits[decoder.part] += str(bit)
         return bit
 
     monkeypatch.setattr(SPEC["RangeDecoder"], "bit", record)
@@ -306,65 +331,56 @@ def test_the_error_codes_are_those_of_the_library() -> None:
         path.read_text(encoding="utf-8") for path in (_ROOT / "vmesh" / "codec").glob("*.py")
     )
     raised = set(re.findall(r'FormatError\(\s*"(\w+)"', sources))
-    raised |= set(re.findall(r'_decode\([^"]*"(\w+)"', sources))
+    raised |= set(re.findall(r'(?:_end|_read_varint)\([^"]*"(\w+)"', sources))
 
     assert {code for code, _ in table(section(12), "Code")} == raised
     stated = "\n".join(blocks("python"))
-    named = re.findall(r'(?:require|Invalid|RangeDecoder)\(.*?"(\w+)"\)', stated, re.DOTALL)
-    assert raised <= {*named, *re.findall(r'Invalid\("(\w+)" if', stated)}
-
-
-def chunks_of(data: bytes) -> Chunks:
-    return [(chunk.tag, chunk.content) for chunk in layout.read_chunks(data)]
+    named = re.findall(r'(?:require|Invalid)\(.*?"(\w+)"\)', stated, re.DOTALL)
+    named += re.findall(r'Invalid\("(\w+)" if', stated)
+    named += re.findall(r'decoder\.part = "(\w+)"', stated)
+    assert raised <= set(named)
 
 
 _VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=_METADATA), 2))
+_HEADER, _CHUNKS = split(_VALID)
+_MESH: Final = _CHUNKS[-1]
+_START: Final = checked(SIGNATURE + _HEADER)
 
 
-def rebuilt(**contents: bytes) -> bytes:
-    """The valid file with other contents of some chunks, and correct checksums."""
-    return layout.pack_file(
-        (tag, contents.get(tag.decode(), content)) for tag, content in chunks_of(_VALID)
-    )
+def with_mesh(content: bytes) -> bytes:
+    """The valid file with another content of M."""
+    return file_of(_HEADER, [*_CHUNKS[:-1], (b"M", content)])
 
 
-def with_header(offset: int, code: str, *values: int) -> bytes:
-    """The valid file with some bytes of its header replaced."""
-    content = bytearray(dict(chunks_of(_VALID))[b"HEAD"])
-    struct.pack_into(f"<{code}", content, offset, *values)
-    return rebuilt(HEAD=bytes(content))
+def with_chunks(*chunks: tuple[bytes, bytes]) -> bytes:
+    """The valid file with other chunks before M."""
+    return file_of(_HEADER, [*chunks, _MESH])
 
 
-def rearranged(*tags: bytes) -> bytes:
-    content = {**dict(chunks_of(_VALID)), b"note": b"", b"Crit": b""}
-    return layout.pack_file((tag, content[tag]) for tag in tags)
+def with_numbers(*numbers: bytes) -> bytes:
+    """The valid file with other width, height and number of vertices."""
+    return file_of(_HEADER[:2] + b"".join(numbers) + _HEADER[-3:], _CHUNKS)
 
 
 def listed(mesh: Mesh, *triangles: tuple[int, int, int]) -> bytes:
     """A file of the mesh with listed triangles that need not make sense."""
-    header = layout.Header(
-        major=0,
-        minor=0,
-        width=mesh.width,
-        height=mesh.height,
-        subdivision=mesh.subdivision,
-        n_components=mesh.n_components,
-        n_vertices=mesh.n_vertices,
-        n_triangles=len(triangles),
-        connectivity=layout.LISTED_TRIANGLES,
-        steps=mesh.lattice.steps,
-    )
-    payload = encode_triangles(np.array(triangles, dtype=np.int32), n_vertices=1000)
-    content = {**dict(chunks_of(vmesh.dumps(mesh))), b"HEAD": header.pack(), b"TRIS": payload}
-    return layout.pack_file((tag, content[tag]) for tag in (b"HEAD", *_TAIL))
+    columns, rows = (side * mesh.unit + 1 for side in (mesh.width, mesh.height))
+
+    def write(encoder: Encoder) -> None:
+        encoder.positions(mesh.vertices, columns, rows)
+        encoder.triangles(np.array(triangles, dtype=np.int32), n_vertices=1000)
+        encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
+
+    header, _ = split(with_header(vmesh.dumps(mesh), connectivity=1))
+    return file_of(header, [(b"M", encode(write))])
 
 
-def miscounted(mesh: Mesh, n_triangles: int) -> bytes:
-    """The file of a Delaunay mesh that claims another number of triangles."""
-    content = dict(chunks_of(vmesh.dumps(mesh)))
-    header = content[b"HEAD"]
-    content[b"HEAD"] = header[:12] + struct.pack("<I", n_triangles) + header[16:]
-    return layout.pack_file(content.items())
+def misplaced(width: int, height: int, *vertices: tuple[int, int]) -> bytes:
+    """A file of a canvas with other vertices than its corners, and colours of no bits."""
+    points = np.array(vertices, dtype=np.int32)
+    content = encode(lambda encoder: encoder.positions(points, width + 1, height + 1))
+    header = bytes([1, 0, width, height, len(points), 1])
+    return file_of(header, [(b"M", content)])
 
 
 def fan(side: int, x: int, y: int) -> Mesh:
@@ -374,73 +390,85 @@ def fan(side: int, x: int, y: int) -> Mesh:
     return Mesh.from_colors(side, side, vertices, triangles, [[5], [90], [200], [40], [250]])
 
 
-_TAIL: Final = (b"VERT", b"TRIS", b"COLR", b"DONE")
-
 DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "nothing": ("truncated", b""),
     "a photograph": ("signature", b"\x89PNG\r\n\x1a\n" + bytes(40)),
+    "draft 0": ("signature", b"\x8bVMS\r\n\x1a\n" + bytes(40)),
     "line ends converted": ("signature", _VALID.replace(b"\r\n", b"\n")),
-    "half a signature": ("truncated", _VALID[:5]),
-    "only a signature": ("truncated", _VALID[:8]),
-    "no end": ("truncated", _VALID[:-12]),
+    "half a signature": ("truncated", _VALID[:3]),
+    "only a signature": ("truncated", _VALID[:5]),
+    "half a header": ("truncated", _VALID[:9]),
+    "no chunk": ("truncated", _START),
+    "no mesh": ("truncated", file_of(_HEADER, _CHUNKS[:-1])),
     "no last byte": ("truncated", _VALID[:-1]),
     "a byte more": ("trailing", _VALID + b"\0"),
-    "a flipped bit": ("checksum", _VALID[:20] + bytes([_VALID[20] ^ 1]) + _VALID[21:]),
-    "a tag with a digit": ("chunk", _VALID[:8] + b"HEA0" + _VALID[12:]),
-    "a long chunk": ("chunk", _VALID[:8] + b"HEAD\xff\xff\xff\xff" + _VALID[16:]),
-    "no header": ("chunk", rearranged(*_TAIL)),
-    "two headers": ("chunk", rearranged(b"HEAD", b"HEAD", *_TAIL)),
-    "no colours": ("chunk", rearranged(b"HEAD", b"VERT", b"TRIS", b"DONE")),
-    "misordered": ("chunk", rearranged(b"HEAD", b"TRIS", b"VERT", b"COLR", b"DONE")),
-    "a note too early": ("chunk", rearranged(b"note", b"HEAD", *_TAIL)),
-    "a note too late": ("chunk", rearranged(b"HEAD", b"VERT", b"note", b"COLR", b"DONE")),
-    "two profiles": ("chunk", rearranged(b"HEAD", b"iccp", b"iccp", *_TAIL)),
-    "unknown and critical": ("chunk", rearranged(b"HEAD", b"Crit", *_TAIL)),
-    "a full end": ("chunk", rebuilt(DONE=b"\0")),
-    "an empty header": ("chunk", rebuilt(HEAD=b"")),
-    "a short header": ("header", rebuilt(HEAD=bytes(16))),
-    "major version 1": ("version", with_header(0, "B", 1)),
-    "minor version 1": ("version", with_header(1, "B", 1)),
-    "a version alone": ("version", rebuilt(HEAD=b"\1\0")),
-    "no width": ("header", with_header(2, "H", 0)),
-    "no height": ("header", with_header(4, "H", 0)),
-    "subdivision 9": ("header", with_header(6, "B", 9)),
-    "a huge lattice": ("header", with_header(2, "HHB", 5, 65535, 4)),
-    "two components": ("header", with_header(7, "B", 2)),
-    "four components": ("header", with_header(7, "B", 4)),
-    "three vertices": ("header", with_header(8, "I", 3)),
-    "too many vertices": ("header", with_header(8, "I", 43)),
-    "one triangle": ("header", with_header(12, "I", 1)),
-    "too many triangles": ("header", with_header(12, "I", 25)),
-    "implied but listed": ("header", with_header(16, "B", 0)),
-    "unknown connectivity": ("header", with_header(16, "B", 2)),
-    "step 0": ("header", with_header(17, "B", 0)),
-    "listed but not there": ("header", rearranged(b"HEAD", b"VERT", b"COLR", b"DONE")),
-    "not deflated": ("metadata", rebuilt(iccp=b"profile")),
-    "half a stream": ("metadata", rebuilt(iccp=zlib.compress(b"profile" * 9)[:-5])),
-    "two streams": ("metadata", rebuilt(iccp=2 * zlib.compress(b"profile"))),
-    "an empty profile": ("metadata", rebuilt(iccp=zlib.compress(b""))),
-    "more positions": ("positions", rebuilt(VERT=dict(chunks_of(_VALID))[b"VERT"] + bytes(9))),
-    "more triangles": ("triangles", rebuilt(TRIS=dict(chunks_of(_VALID))[b"TRIS"] + bytes(9))),
-    "more colours": ("colors", rebuilt(COLR=dict(chunks_of(_VALID))[b"COLR"] + bytes(9))),
-    "other positions": ("geometry", rebuilt(VERT=b"\xaa")),
-    "other triangles": ("triangles", rebuilt(TRIS=b"")),
-    "other colours": ("colors", rebuilt(COLR=b"")),
-    "an unknown third vertex": ("triangles", listed(fan(2, 1, 1), (0, 1, 4), (0, 4, 5))),
-    "an unknown second vertex": ("triangles", listed(fan(2, 1, 1), (0, 1, 4), (0, 5, 4))),
-    "an unknown first vertex": ("triangles", listed(fan(2, 1, 1), (0, 1, 4), (5, 6, 7))),
-    "fewer triangles": ("geometry", miscounted(fan(2, 1, 1), 3)),
-    "a gap": ("geometry", listed(fan(2, 1, 1), (0, 1, 2), (0, 2, 3), (1, 4, 2))),
+    "two meshes": ("trailing", _VALID + chunk_of(*_MESH)),
+    "a note too late": ("trailing", _VALID + chunk_of(b"n", b"")),
+    "a flipped bit": ("checksum", _VALID[:30] + bytes([_VALID[30] ^ 1]) + _VALID[31:]),
+    "a flipped bit of a step": ("checksum", _VALID[:10] + bytes([_VALID[10] ^ 1]) + _VALID[11:]),
+    "a flipped bit of a tag": ("checksum", _START + b"m" + chunk_of(*_MESH)[1:]),
+    "version 0.0": ("version", with_header(_VALID, version=0x00)),
+    "version 0.2": ("version", with_header(_VALID, version=0x02)),
+    "version 1.0": ("version", with_header(_VALID, version=0x10)),
+    "a version alone": ("version", _VALID[:5] + b"\x10"),
+    "no width": ("header", with_header(_VALID, width=0)),
+    "no height": ("header", with_header(_VALID, height=0)),
+    "too wide": ("header", with_header(_VALID, width=65_536)),
+    "too high": ("header", with_header(_VALID, height=65_536)),
+    "subdivision 9": ("header", with_header(_VALID, subdivision=9)),
+    "a huge lattice": ("header", with_header(_VALID, height=65_535, subdivision=4)),
+    "two components": ("header", with_header(_VALID, b"\1\1", components=1)),
+    "flipped edges": ("header", with_header(_VALID, connectivity=2)),
+    "unknown connectivity": ("header", with_header(_VALID, connectivity=3)),
+    "three vertices": ("header", with_header(_VALID, n_vertices=3)),
+    "too many vertices": ("header", with_header(_VALID, n_vertices=43)),
+    "more vertices than bytes": (
+        "header",
+        with_header(_VALID, width=2000, height=2000, n_vertices=1900 * (len(_MESH[1]) + 1) + 1),
+    ),
+    "step 0": ("header", with_header(_VALID, b"\1\0\1")),
+    "a long width": ("header", with_numbers(padded(6), varint(5), varint(15))),
+    "a long height": ("header", with_numbers(varint(6), padded(5), varint(15))),
+    "a long count": ("header", with_numbers(varint(6), varint(5), padded(15))),
+    "a number without end": ("header", with_numbers(b"\x80" * 9)),
+    "a number of 32 bits": ("header", with_numbers(varint(6), varint(5), varint(2**31))),
+    "a digit as a tag": ("chunk", with_chunks((b"1", b""))),
+    "a tag that is not ASCII": ("chunk", with_chunks((b"\xe9", b""))),
+    "a long length": ("chunk", _START + b"M" + padded(len(_MESH[1])) + _MESH[1]),
+    "a length of 32 bits": ("chunk", _START + b"M" + varint(2**31) + _MESH[1]),
+    "a length without end": ("chunk", _START + b"M" + b"\xff" * 9),
+    "two profiles": ("chunk", with_chunks(_CHUNKS[0], (b"n", b""), _CHUNKS[0])),
+    "unknown and critical": ("chunk", with_chunks((b"C", b""))),
+    "not deflated": ("metadata", with_chunks((b"i", b"profile"))),
+    "half a stream": ("metadata", with_chunks((b"e", zlib.compress(b"profile" * 9)[:-5]))),
+    "two streams": ("metadata", with_chunks((b"x", 2 * zlib.compress(b"profile")))),
+    "an empty profile": ("metadata", with_chunks((b"i", zlib.compress(b"")))),
+    "no positions": ("positions", with_mesh(b"")),
+    "half of the positions": ("positions", with_mesh(_MESH[1][:2])),
+    "other positions": ("geometry", misplaced(3, 3, (1, 1), (2, 1), (1, 2), (2, 2))),
+    "three corners": ("geometry", misplaced(3, 3, (0, 0), (3, 0), (0, 3), (2, 3))),
+    "half of the triangles": ("triangles", with_mesh(_MESH[1][:14])),
+    "half of the colours": ("colors", with_mesh(_MESH[1][:-20])),
+    "more colours": ("colors", with_mesh(_MESH[1] + bytes(9))),
+    "an unknown third vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 5), (2, 4, 3)),
+    ),
+    "an unknown second vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 5, 4), (2, 4, 3)),
+    ),
+    "an unknown first vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (5, 6, 7)),
+    ),
+    "a gap and an overlap of the same size": (
+        "geometry",
+        listed(mesh_of(2, 1, 1, n_vertices=6), (0, 1, 3), (0, 4, 3), (1, 2, 4), (1, 5, 4)),
+    ),
     "an overlap": ("geometry", listed(DUMPED[1], (0, 1, 3), (1, 3, 2))),
     "a fold": ("geometry", listed(fan(3, 2, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
     "a line": ("geometry", listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
-    "a vertex within an edge": ("geometry", listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (2, 4, 3))),
-    "covered twice": (
-        "geometry",
-        listed(
-            mesh_of(2, 1, 1, n_vertices=6), (0, 1, 3), (0, 2, 3), (1, 2, 5), (1, 5, 3), (2, 5, 3)
-        ),
-    ),
 }
 
 
@@ -462,25 +490,6 @@ def test_a_damaged_file_has_the_same_code_by_specification_and_library(name: str
     assert code_of(vmesh.loads, data) == code
 
 
-def test_a_vertex_without_triangles_is_invalid() -> None:
-    triangles = np.array([(0, 1, 4), (0, 4, 3)], dtype=np.int32)
-    mesh = fan(2, 1, 1).replaced(triangles=triangles)
-    chunks = {chunk.tag: chunk.content for chunk in layout.read_chunks(vmesh.dumps(fan(2, 1, 1)))}
-    head = bytearray(chunks[b"HEAD"])
-    head[12:17] = struct.pack("<IB", 2, layout.LISTED_TRIANGLES)
-    data = layout.pack_file(
-        [
-            (b"HEAD", bytes(head)),
-            (b"VERT", chunks[b"VERT"]),
-            (b"TRIS", encode_triangles(mesh.triangles, mesh.n_vertices)),
-            (b"COLR", b""),
-            (b"DONE", b""),
-        ]
-    )
-
-    assert code_of(decode, data) == code_of(vmesh.loads, data) == "geometry"
-
-
 def test_the_damaged_files_show_every_code() -> None:
     assert {code for code, _ in DAMAGED.values()} == {
         code for code, _ in table(section(12), "Code")
@@ -494,14 +503,16 @@ def test_every_truncation_has_the_same_code_by_specification_and_library() -> No
         assert code_of(decode, _VALID[:length]) == code
 
 
-@settings(max_examples=150)
-@given(st.sampled_from([b"VERT", b"TRIS", b"COLR"]), st.binary(max_size=40))
-@example(b"COLR", bytes(40))
-@example(b"COLR", b"\xff" * 40)
-def test_any_payload_means_the_same_to_specification_and_library(
-    tag: bytes, payload: bytes
+@settings(max_examples=200)
+@given(st.integers(0, len(_MESH[1])), st.binary(max_size=40))
+@example(0, bytes(40))
+@example(0, b"\xff" * 40)
+@example(len(_MESH[1]), b"\0")
+@example(len(_MESH[1]) - 1, b"")
+def test_any_coded_mesh_means_the_same_to_specification_and_library(
+    length: int, rest: bytes
 ) -> None:
-    data = rebuilt(**{tag.decode(): payload})
+    data = with_mesh(_MESH[1][:length] + rest)
 
     code = code_of(decode, data)
     assert code == code_of(vmesh.loads, data)
@@ -518,30 +529,80 @@ def test_the_table_of_the_signature_spells_the_signature() -> None:
     assert bytes.fromhex(values) == layout.SIGNATURE == SPEC["SIGNATURE"]
 
 
-def test_the_table_of_the_header_matches_the_bytes_that_are_packed() -> None:
-    rows = table(section(4), "Offset")
-    header = layout.Header(1, 2, 3, 4, 5, 6, 7, 8, 9, steps=(10, 11, 12))
-    content = header.pack()
-    sizes = {"u8": 1, "u16": 2, "u32": 4}
-    fields: list[int] = []
+def test_the_tables_of_the_header_match_the_bytes_that_are_packed() -> None:
+    rows = table(section(4), "Bytes")
+    values = {"width": 300, "height": 20_000, "n": 127}
+    header = layout.Header(300, 20_000, 3, 1, 127, steps=(4, 5, 6))
+    packed = header.pack()[len(layout.SIGNATURE) :]
     place = 0
-    for offset, kind, _, _ in rows[:-1]:
-        assert int(offset) == place
-        fields.append(int.from_bytes(content[place : place + sizes[kind]], "little"))
-        place += sizes[kind]
+    for size, kind, field, _ in rows:
+        if kind == "varint":
+            lowest, _, highest = size.partition(" to ")
+            coded = varint(values[re.findall("width|height|n", field)[0]])
+            assert int(lowest) <= len(coded) <= int(highest)
+        elif size == "c":
+            coded = bytes(header.steps)
+        else:
+            coded = packed[place : place + int(size)]
+            assert len(coded) == {"u8": 1, "u32": 4}[kind]
+        assert packed[place : place + len(coded)] == coded
+        place += len(coded)
+    assert place == len(packed)
+    assert f"{packed[0] >> 4}.{packed[0] & 15}" == rows[0][3]
+    stored = {"number": header.n_components - 1, "subdivision": 3, "connectivity": 1}
+    for bits, field, _ in table(section(4), "Bits"):
+        first, *_, last = re.findall(r"\d", bits)
+        mask = (1 << int(last) - int(first) + 1) - 1
+        assert packed[1] >> int(first) & mask == stored[re.split(r"\W", field)[0]]
 
-    assert fields == list(range(1, 10))
-    assert int(rows[-1][0]) == place == len(content) - 3
-    assert f"`HEAD` is {place} bytes" in section(4)
+
+def frame_of(data: bytes) -> int:
+    """Bytes of a file that are not the content of a chunk."""
+    return len(data) - sum(len(content) for _, content in split(data)[1])
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_the_frame_is_as_long_as_stated(name: str) -> None:
+    mesh = MESHES[name]().replaced(metadata=Metadata())
+    data = vmesh.dumps(mesh)
+    ((_, content),) = split(data)[1]
+    constant = re.search(r"(\d+) \+ c \+ V\(width\)", section(3))
+    assert constant
+
+    numbers = (mesh.width, mesh.height, mesh.n_vertices, len(content))
+    counted = sum(len(varint(number)) for number in numbers)
+    assert frame_of(data) == int(constant[1]) + mesh.n_components + counted
+
+
+def test_the_examples_of_the_frame_are_as_stated() -> None:
+    text = " ".join(section(3).split())
+    black = corners_only(768, 512, [0, 0, 0, 0])
+    levels = np.zeros((4, 3), dtype=np.int32)
+    data = vmesh.dumps(black.replaced(levels=levels, lattice=ColorLattice((1, 1, 1))))
+    assert f"these are {frame_of(data)} bytes; the whole file has {len(data)}" in text
+    found = re.search(r"With ([\d,]+) vertices and ([\d,]+) bytes of mesh .* has (\d+) bytes", text)
+    assert found
+    n_vertices, length, frame = (whole(number) for number in found.groups())
+    header = layout.Header(768, 512, 1, 0, n_vertices, steps=(8, 12, 10))
+    assert len(layout.pack_file(header, [(b"M", bytes(length))])) - length == frame
+
+
+def test_the_levels_that_a_byte_may_hold_are_as_many_as_the_odds_allow() -> None:
+    least = min(-np.log2(1 - 64 / 65536), -np.log2(65472 / 65536))
+    stated = re.search(r"no bit takes less than ([\d.]+) bits", section(4))
+    assert stated
+    assert 0.99 < float(stated[1]) / least < 1
+    assert 8 / float(stated[1]) < 5700
+    assert "5,700 for each byte" in section(4)
 
 
 def test_the_contexts_are_as_many_as_stated() -> None:
-    stated = {payload: whole(text) for payload, text in table(section(5), "Payload")}
+    stated = {part: whole(text) for part, text in table(section(5), "Part")}
 
     assert stated == {
-        "VERT": entropy.SPLIT_CONTEXTS,
-        "TRIS": 3 * entropy.NUMBER_CONTEXTS,
-        "COLR": entropy.COMPONENT_CONTEXTS,
+        "positions": entropy.SPLIT_CONTEXTS,
+        "triangles": 3 * entropy.NUMBER_CONTEXTS,
+        "colours": entropy.COMPONENT_CONTEXTS,
     }
 
 

@@ -1,73 +1,99 @@
-"""``vmesh info``: what is in a .vmesh file, without decoding it."""
+"""``vmesh info``: what is in a .vmesh file, by its header and, if asked for, by its coded mesh."""
 
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 import click
 
 from vmesh.cli.streams import read_input
 from vmesh.codec import layout
-from vmesh.errors import FormatError
+from vmesh.errors import FormatError, LimitError
+
+_CHUNK_NAMES: Final = {
+    layout.MESH_TAG: "mesh",
+    **{tag: name for name, tag in layout.METADATA_TAGS.items()},
+}
 
 
 @click.command("info")
 @click.argument("source", metavar="INPUT.vmesh")
+@click.option(
+    "--parts",
+    "by_parts",
+    is_flag=True,
+    help="Decode the mesh, to count its triangles and the bytes of its positions and colors.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")
-def command(source: str, as_json: bool) -> None:
+def command(source: str, by_parts: bool, as_json: bool) -> None:
     """Say what is in a .vmesh file: its size, its mesh, and the bytes of each part."""
     data = read_input(source)
     try:
-        figures = describe(data)
+        figures = describe(data, by_parts)
     except FormatError as error:
         raise FormatError(error.code, f"{source}: {error.message}", error.offset) from None
+    except LimitError as error:
+        raise LimitError(f"{source}: {error}") from None
     click.echo(json.dumps(figures) if as_json else _table(figures))
 
 
-def describe(data: bytes) -> dict[str, Any]:
-    """Figures of a file whose frame and header are sound; its payloads are not decoded."""
-    chunks = layout.read_chunks(data)
-    header = layout.read_header(chunks)
-    implied = header.connectivity == layout.IMPLIED_TRIANGLES
-    return {
-        "version": f"{header.major}.{header.minor}",
+def describe(data: bytes, by_parts: bool) -> dict[str, Any]:
+    """Figures of a file whose frame and header are sound; its mesh is decoded only for its parts.
+
+    The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
+    tags and checksums, is the frame.
+    """
+    header, chunks = layout.read_file(data)
+    figures: dict[str, Any] = {
+        "version": ".".join(map(str, layout.VERSION)),
         "width": header.width,
         "height": header.height,
         "components": {1: "grey", 3: "RGB", 4: "RGBA"}[header.n_components],
         "color_steps": list(header.steps),
         "subdivision": header.subdivision,
         "vertices": header.n_vertices,
-        "triangles": header.n_triangles,
-        "connectivity": "implied" if implied else "listed",
+        "connectivity": (
+            "implied" if header.connectivity == layout.IMPLIED_TRIANGLES else "listed"
+        ),
         "bytes": len(data),
         "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
-        "parts": [
-            {
-                "tag": chunk.tag.decode(),
-                "offset": chunk.offset,
-                "bytes": chunk.size,
-                "bits_per_vertex": round(8 * chunk.size / header.n_vertices, 3),
-            }
-            for chunk in chunks
-        ],
     }
+    parts = [("frame", len(data) - sum(len(chunk.content) for chunk in chunks))]
+    parts += [(_CHUNK_NAMES.get(c.tag, c.tag.decode()), len(c.content)) for c in chunks]
+    if by_parts:
+        from vmesh.codec.reader import measure
+
+        mesh, sizes = measure(data)
+        figures["triangles"] = mesh.n_triangles
+        parts[-1:] = sizes.items()
+    figures["parts"] = [
+        {
+            "part": name,
+            "bytes": size,
+            "bits_per_vertex": round(8 * size / header.n_vertices, 3),
+        }
+        for name, size in parts
+    ]
+    return figures
 
 
 def _table(figures: dict[str, Any]) -> str:
     """The figures as lines for people."""
     density = figures["vertices"] / (figures["width"] * figures["height"])
+    triangles = f"{figures['triangles']} triangles" if "triangles" in figures else "triangles"
     lines = [
         f"{figures['width']} x {figures['height']} pixels, {figures['components']}, "
         f".vmesh {figures['version']}",
-        f"{figures['vertices']} vertices ({density:.2%} of the pixels), "
-        f"{figures['triangles']} triangles, {figures['connectivity']}",
+        f"{figures['vertices']} vertices ({density:.2%} of the pixels) "
+        f"on 1/{1 << figures['subdivision']} pixel, {figures['connectivity']} {triangles}",
+        f"colour steps {', '.join(map(str, figures['color_steps']))}",
         f"{figures['bytes']} bytes, {figures['bits_per_vertex']:.2f} bits per vertex",
         "",
-        "part      bytes  bits per vertex",
+        "part           bytes  bits per vertex",
     ]
     lines += [
-        f"{part['tag']}  {part['bytes']:9}  {part['bits_per_vertex']:15.2f}"
+        f"{part['part']:9}  {part['bytes']:9}  {part['bits_per_vertex']:15.2f}"
         for part in figures["parts"]
     ]
     return "\n".join(lines)

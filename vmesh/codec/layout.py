@@ -1,13 +1,17 @@
-"""Every byte of a .vmesh file outside the coded payloads (spec, sections 3 and 4).
+"""Every byte of a .vmesh file outside the coded mesh (spec, sections 3 and 4).
 
 ::
 
-    signature   8 bytes
-    chunk       tag 4 | length 4 | content, length bytes | CRC-32 of tag, length and content 4
-    ...         HEAD, then metadata, VERT, TRIS if the triangles are listed, COLR, DONE
+    signature   5 bytes
+    header      version 1 | format 1 | width, height, number of vertices, varints of 1 to 5
+                steps, 1 for each component | CRC-32 of signature and header 4
+    chunk       tag 1 | length, a varint | content, length bytes | CRC-32 of all that 4
+    ...         metadata, then the mesh, M, with which the file ends
 
-Integers are little-endian. A tag that begins with a capital letter is critical: a reader that
-does not know it gives up. One that begins with a small letter is ancillary: it is kept as it is.
+    format      bits 0-1  components - 1     bits 2-5  subdivision     bits 6-7  connectivity
+
+A tag is a letter. A capital one is critical: a reader that does not know it gives up. A small one
+is ancillary: it is kept as it is.
 """
 
 from __future__ import annotations
@@ -16,76 +20,60 @@ import re
 import struct
 import zlib
 from collections.abc import Iterable, Iterator
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import Final
 
 from vmesh.errors import FormatError
+from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 
-SIGNATURE: Final = b"\x8bVMS\r\n\x1a\n"
-MAJOR_VERSION: Final = 0
-MINOR_VERSION: Final = 0
+SIGNATURE: Final = b"\x8bVM\r\n"
+VERSION: Final = (0, 1)
 
-HEADER_TAG: Final = b"HEAD"
-POSITIONS_TAG: Final = b"VERT"
-TRIANGLES_TAG: Final = b"TRIS"
-COLORS_TAG: Final = b"COLR"
-END_TAG: Final = b"DONE"
-METADATA_TAGS: Final = {"icc": b"iccp", "exif": b"exif", "xmp": b"xmpp"}
+MESH_TAG: Final = b"M"
+METADATA_TAGS: Final = {"icc": b"i", "exif": b"e", "xmp": b"x"}
 
 IMPLIED_TRIANGLES: Final = 0
 LISTED_TRIANGLES: Final = 1
 
-_FRAME = struct.Struct("<4sI")
 _CHECKSUM = struct.Struct("<I")
-_HEADER = struct.Struct("<BBHHBBIIB")
-_TAG_PATTERN = re.compile(rb"[A-Za-z]{4}")
-_MAX_LENGTH: Final = (1 << 31) - 1
-# Each level takes a bit at least, which costs 0.0014 bits at the longest odds: 5,677 levels to a
-# byte. With some margin, this refuses a small file that claims a huge mesh before it is decoded.
-_LEVELS_PER_BYTE: Final = 8192
-_COLOR_SLACK: Final = 16
-_MAX_SUBDIVISION: Final = 8
-_MAX_LATTICE_SIDE: Final = 1 << 19
+_TAG_PATTERN = re.compile(rb"[A-Za-z]")
+_MAX_VARINT: Final = (1 << 31) - 1
+# A level takes a bit at least, and a bit at the longest odds 0.0014 bits of the stream: 5,678 to a
+# byte. What the stream holds at its end is at most a byte more than its bytes. So this refuses a
+# small file that claims a huge mesh before it is decoded, and never one that could be.
+_LEVELS_PER_BYTE: Final = 5_700
 
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """One chunk: its tag, its content and where it starts in the file."""
+    """One chunk: its tag, its content, and where it and its content start in the file."""
 
     tag: bytes
     content: bytes
     offset: int
+    content_offset: int
 
     @property
     def is_critical(self) -> bool:
         """Whether a reader has to know this chunk."""
-        return self.tag[:1].isupper()
-
-    @property
-    def content_offset(self) -> int:
-        """Offset of the content's first byte in the file."""
-        return self.offset + _FRAME.size
-
-    @property
-    def size(self) -> int:
-        """Bytes of the whole chunk, frame included."""
-        return _FRAME.size + len(self.content) + _CHECKSUM.size
+        return self.tag.isupper()
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """The content of HEAD, field by field; the steps of the colour components follow it."""
+    """What a file says about its mesh before it: canvas, lattice, counts and colour steps."""
 
-    major: int
-    minor: int
     width: int
     height: int
     subdivision: int
-    n_components: int
-    n_vertices: int
-    n_triangles: int
     connectivity: int
+    n_vertices: int
     steps: tuple[int, ...]
+
+    @property
+    def n_components(self) -> int:
+        """Number of colour components."""
+        return len(self.steps)
 
     @property
     def columns(self) -> int:
@@ -98,28 +86,44 @@ class Header:
         return (self.height << self.subdivision) + 1
 
     def pack(self) -> bytes:
-        """Content of the chunk HEAD."""
-        *fields, steps = astuple(self)
-        return _HEADER.pack(*fields) + bytes(steps)
+        """Bytes of signature and header, with their checksum."""
+        version = VERSION[0] << 4 | VERSION[1]
+        form = (self.n_components - 1) | self.subdivision << 2 | self.connectivity << 6
+        counts = b"".join(map(pack_varint, (self.width, self.height, self.n_vertices)))
+        return _checked(SIGNATURE + bytes((version, form)) + counts + bytes(self.steps))
+
+
+def pack_varint(number: int) -> bytes:
+    """A number in bytes of seven bits each, the lowest first; all but the last have bit 7 set."""
+    if not 0 <= number <= _MAX_VARINT:
+        raise ValueError(f"expected a number of 0 to {_MAX_VARINT}, got {number}")
+    groups = bytearray()
+    while number > 0x7F:
+        groups.append(number & 0x7F | 0x80)
+        number >>= 7
+    groups.append(number)
+    return bytes(groups)
 
 
 def pack_chunk(tag: bytes, content: bytes) -> bytes:
     """Bytes of one chunk."""
-    if len(content) > _MAX_LENGTH:
-        raise ValueError(f"a chunk holds at most {_MAX_LENGTH} bytes, got {len(content)}")
-    framed = _FRAME.pack(tag, len(content)) + content
-    return framed + _CHECKSUM.pack(zlib.crc32(framed))
+    return _checked(tag + pack_varint(len(content)) + content)
 
 
-def pack_file(chunks: Iterable[tuple[bytes, bytes]]) -> bytes:
-    """Bytes of a file of chunks given as tag and content."""
-    return SIGNATURE + b"".join(pack_chunk(tag, content) for tag, content in chunks)
+def pack_file(header: Header, chunks: Iterable[tuple[bytes, bytes]]) -> bytes:
+    """Bytes of a file of a header and chunks, given as tag and content."""
+    return header.pack() + b"".join(pack_chunk(tag, content) for tag, content in chunks)
+
+
+def _checked(data: bytes) -> bytes:
+    """Bytes and their checksum."""
+    return data + _CHECKSUM.pack(zlib.crc32(data))
 
 
 def check_ancillary(tag: bytes) -> None:
     """Raise :class:`ValueError` unless a tag can name an ancillary chunk that is not known."""
-    if not (_TAG_PATTERN.fullmatch(tag) and tag[:1].islower()):
-        raise ValueError(f"expected a tag of four letters, the first one small, got {tag!r}")
+    if not (_TAG_PATTERN.fullmatch(tag) and tag.islower()):
+        raise ValueError(f"expected a tag of one small letter, got {tag!r}")
     if tag in METADATA_TAGS.values():
         raise ValueError(f"chunk {tag.decode()} is known: it cannot be kept as an unknown one")
 
@@ -129,15 +133,30 @@ def is_vmesh(start: bytes) -> bool:
     return start[: len(SIGNATURE)] == SIGNATURE
 
 
-def read_chunks(data: bytes) -> list[Chunk]:
-    """All chunks of a file, their checksums and order verified.
+def read_file(data: bytes) -> tuple[Header, list[Chunk]]:
+    """The header of a file, every field within its range, and all chunks, the mesh last.
+
+    Checksums are verified, the contents of the chunks are not looked at.
 
     Raises
     ------
     FormatError
-        With the code ``signature``, ``truncated``, ``version``, ``chunk``, ``checksum`` or
-        ``trailing``.
+        With the code ``signature``, ``version``, ``truncated``, ``checksum``, ``header``,
+        ``chunk`` or ``trailing``.
     """
+    header, offset = _read_header(data)
+    chunks = list(_iterate_chunks(data, offset))
+    room = len(chunks[-1].content)
+    levels = header.n_vertices * header.n_components
+    if levels > _LEVELS_PER_BYTE * (room + 1):
+        raise FormatError(
+            "header", f"a mesh of {room} bytes cannot hold {levels} colour levels", len(SIGNATURE)
+        )
+    return header, chunks
+
+
+def _read_header(data: bytes) -> tuple[Header, int]:
+    """The header, and the offset of what follows it."""
     if not is_vmesh(data):
         if SIGNATURE.startswith(data):
             raise FormatError("truncated", "the file ends within its signature", len(data))
@@ -146,120 +165,106 @@ def read_chunks(data: bytes) -> list[Chunk]:
             f"expected the signature of a .vmesh file, got {data[: len(SIGNATURE)].hex(' ')!r}",
             0,
         )
-    chunks: list[Chunk] = []
-    for chunk in _iterate_chunks(data):
-        if not chunks:
-            _check_version(chunk)
-        chunks.append(chunk)
-    _check_order(chunks)
-    return chunks
+    start = len(SIGNATURE)
+    # A newer version may have another header: its first byte alone is sure to mean the same.
+    _check_version(_take(data, start, 1, "the header")[0])
+    form = _take(data, start + 1, 1, "the header")[0]
+    numbers = []
+    end = start + 2
+    for _ in range(3):
+        number, end = _read_varint(data, end, "header")
+        numbers.append(number)
+    width, height, n_vertices = numbers
+    n_components = (form & 3) + 1
+    steps = tuple(_take(data, end, n_components, "the header"))
+    end += n_components
+    _verify(data, 0, end, "the header")
+    header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, steps)
+    for complaint in _header_complaints(header):
+        raise FormatError("header", complaint, start)
+    return header, end + _CHECKSUM.size
 
 
-def _iterate_chunks(data: bytes) -> Iterator[Chunk]:
-    """Chunks up to DONE, with nothing after it."""
-    offset = len(SIGNATURE)
-    tag = b""
-    while tag != END_TAG:
-        if len(data) - offset < _FRAME.size:
-            raise FormatError("truncated", "the file ends where a chunk should begin", len(data))
-        tag, length = _FRAME.unpack_from(data, offset)
-        if not _TAG_PATTERN.fullmatch(tag):
-            raise FormatError("chunk", f"expected a tag of four letters, got {tag!r}", offset)
-        if length > _MAX_LENGTH:
-            raise FormatError("chunk", f"chunk {tag.decode()} claims {length} bytes", offset)
-        start = offset + _FRAME.size
-        end = start + length
-        if len(data) < end + _CHECKSUM.size:
-            raise FormatError("truncated", f"the file ends within {tag.decode()}", len(data))
-        (stored,) = _CHECKSUM.unpack_from(data, end)
-        if stored != zlib.crc32(data[offset:end]):
-            raise FormatError("checksum", f"chunk {tag.decode()} is damaged", offset)
-        yield Chunk(tag, data[start:end], offset)
-        offset = end + _CHECKSUM.size
-    if offset != len(data):
-        raise FormatError("trailing", f"{len(data) - offset} bytes follow the end", offset)
-
-
-def _check_version(chunk: Chunk) -> None:
-    """Refuse a file of a newer version by its first chunk, before anything else in it matters."""
-    if chunk.tag != HEADER_TAG or len(chunk.content) < 2:
-        raise FormatError("chunk", "the first chunk must be HEAD with a version", chunk.offset)
-    version = (chunk.content[0], chunk.content[1])
-    if version > (MAJOR_VERSION, MINOR_VERSION):
+def _check_version(byte: int) -> None:
+    """Refuse a file of another version, before anything else in it matters."""
+    version = (byte >> 4, byte & 15)
+    if version != VERSION:
         raise FormatError(
             "version",
             f"the file is of version {version[0]}.{version[1]}, "
-            f"this program reads up to {MAJOR_VERSION}.{MINOR_VERSION}",
-            chunk.content_offset,
+            f"this program reads {VERSION[0]}.{VERSION[1]}",
+            len(SIGNATURE),
         )
 
 
-def _check_order(chunks: list[Chunk]) -> None:
-    """Refuse unknown critical, duplicate and misordered chunks."""
-    expected = [HEADER_TAG, POSITIONS_TAG, TRIANGLES_TAG, COLORS_TAG, END_TAG]
-    place = 0
-    seen: set[bytes] = set()
-    for chunk in chunks:
-        name = chunk.tag.decode()
-        if chunk.tag in METADATA_TAGS.values() and chunk.tag in seen:
-            raise FormatError("chunk", f"chunk {name} appears twice", chunk.offset)
-        seen.add(chunk.tag)
-        if not chunk.is_critical:
-            if place != 1:
-                raise FormatError("chunk", f"chunk {name} must follow HEAD", chunk.offset)
-            continue
-        if chunk.tag not in expected:
-            raise FormatError("chunk", f"critical chunk {name} is unknown", chunk.offset)
-        if chunk.tag not in expected[place : place + 2] or (
-            chunk.tag != expected[place] and expected[place] != TRIANGLES_TAG
-        ):
-            raise FormatError("chunk", f"chunk {name} is out of place", chunk.offset)
-        place = expected.index(chunk.tag) + 1
-    if chunks[-1].content:
-        raise FormatError("chunk", "chunk DONE must be empty", chunks[-1].offset)
-
-
-def read_header(chunks: list[Chunk]) -> Header:
-    """The header of a file, every field within its range.
-
-    Raises
-    ------
-    FormatError
-        With the code ``header``.
-    """
-    chunk = chunks[0]
-    content, offset = chunk.content, chunk.content_offset
-    if len(content) < _HEADER.size:
-        raise FormatError("header", "chunk HEAD is too short", offset)
-    steps = tuple(content[_HEADER.size :])
-    header = Header(*(*_HEADER.unpack_from(content), steps))
-    for complaint in _header_complaints(header, chunks):
-        raise FormatError("header", complaint, offset)
-    return header
-
-
-def _header_complaints(header: Header, chunks: list[Chunk]) -> Iterator[str]:
+def _header_complaints(header: Header) -> Iterator[str]:
     """What is wrong with a header, in words."""
-    if not (header.width and header.height):
-        yield f"expected a canvas with pixels, got {header.width} x {header.height}"
-    if header.subdivision > _MAX_SUBDIVISION:
-        yield f"expected a subdivision of 0 to {_MAX_SUBDIVISION}, got {header.subdivision}"
-    if max(header.columns, header.rows) - 1 > _MAX_LATTICE_SIDE:
-        yield f"expected a canvas of at most {_MAX_LATTICE_SIDE} lattice units a side"
+    if not (1 <= header.width <= MAX_SIDE and 1 <= header.height <= MAX_SIDE):
+        yield (
+            f"expected a canvas of 1 to {MAX_SIDE} pixels a side, "
+            f"got {header.width} x {header.height}"
+        )
+    if header.subdivision > MAX_SUBDIVISION:
+        yield f"expected a subdivision of 0 to {MAX_SUBDIVISION}, got {header.subdivision}"
+    if max(header.columns, header.rows) - 1 > MAX_LATTICE_SIDE:
+        yield f"expected a canvas of at most {MAX_LATTICE_SIDE} lattice units a side"
     if header.n_components not in (1, 3, 4):
         yield f"expected 1, 3 or 4 colour components, got {header.n_components}"
-    if len(header.steps) != header.n_components or 0 in header.steps:
-        yield f"expected {header.n_components} steps of 1 to 255, got {list(header.steps)}"
-    if not 4 <= header.n_vertices <= header.columns * header.rows:
-        yield f"expected 4 to {header.columns * header.rows} vertices, got {header.n_vertices}"
-    if not 2 <= header.n_triangles <= 2 * header.n_vertices - 6:
-        yield f"{header.n_vertices} vertices cannot form {header.n_triangles} triangles"
-    levels = header.n_vertices * header.n_components
-    room = sum(len(chunk.content) for chunk in chunks if chunk.tag == COLORS_TAG)
-    if levels > _LEVELS_PER_BYTE * (room + _COLOR_SLACK):
-        yield f"{room} bytes of colours cannot hold {levels} levels"
-    listed = any(chunk.tag == TRIANGLES_TAG for chunk in chunks)
     if header.connectivity not in (IMPLIED_TRIANGLES, LISTED_TRIANGLES):
         yield f"connectivity {header.connectivity} is unknown"
-    elif listed != (header.connectivity == LISTED_TRIANGLES):
-        yield "chunk TRIS must be there if and only if the triangles are listed"
+    if not 4 <= header.n_vertices <= header.columns * header.rows:
+        yield f"expected 4 to {header.columns * header.rows} vertices, got {header.n_vertices}"
+    if 0 in header.steps:
+        yield f"expected steps of 1 to 255, got {list(header.steps)}"
+
+
+def _iterate_chunks(data: bytes, offset: int) -> Iterator[Chunk]:
+    """Chunks from an offset up to the mesh, with nothing after it."""
+    known: set[bytes] = set()
+    tag = b""
+    while tag != MESH_TAG:
+        tag = _take(data, offset, 1, "a chunk")
+        if not _TAG_PATTERN.fullmatch(tag):
+            raise FormatError("chunk", f"expected a letter as a tag, got {tag!r}", offset)
+        name = f"chunk {tag.decode()}"
+        length, start = _read_varint(data, offset + 1, "chunk")
+        content = _take(data, start, length, name)
+        _verify(data, offset, start + length, name)
+        chunk = Chunk(tag, content, offset, start)
+        if chunk.is_critical and tag != MESH_TAG:
+            raise FormatError("chunk", f"critical {name} is unknown", offset)
+        if tag in known:
+            raise FormatError("chunk", f"{name} appears twice", offset)
+        if tag in METADATA_TAGS.values():
+            known.add(tag)
+        yield chunk
+        offset = start + length + _CHECKSUM.size
+    if offset != len(data):
+        raise FormatError("trailing", f"{len(data) - offset} bytes follow the mesh", offset)
+
+
+def _take(data: bytes, offset: int, length: int, name: str) -> bytes:
+    """Bytes of the file, which must go on that far."""
+    if len(data) < offset + length:
+        raise FormatError("truncated", f"the file ends within {name}", len(data))
+    return data[offset : offset + length]
+
+
+def _read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
+    """A number in the shortest form, and the offset of what follows it."""
+    number = 0
+    for i in range(5):
+        (byte,) = _take(data, offset + i, 1, f"a {code}")
+        number |= (byte & 0x7F) << 7 * i
+        if byte < 0x80:
+            if (byte == 0 and i > 0) or number > _MAX_VARINT:
+                break
+            return number, offset + i + 1
+    raise FormatError(code, f"expected a number of 0 to {_MAX_VARINT} in its shortest form", offset)
+
+
+def _verify(data: bytes, start: int, end: int, name: str) -> None:
+    """Compare the checksum that follows some bytes."""
+    (stored,) = _CHECKSUM.unpack(_take(data, end, _CHECKSUM.size, name))
+    if stored != zlib.crc32(data[start:end]):
+        raise FormatError("checksum", f"{name} is damaged", start)

@@ -1,112 +1,198 @@
-"""The coded payloads: positions, triangles and colours (spec, sections 6 to 8)."""
+"""The coded mesh: positions, triangles and colours in one stream (spec, sections 5 to 8)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import log2
+from typing import Final
 
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
+from vmesh.codec.layout import LISTED_TRIANGLES, Header
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
-from vmesh.mesh import raster_keys
+from vmesh.kernels.delaunay import delaunay
+from vmesh.mesh import Mesh, raster_keys
 
-Code = Callable[[Int64Array, UInt8Array], int]
-"""Codes one payload with a coder and its data, in either direction; returns a status."""
-
-
-def encode_positions(vertices: Int32Array, columns: int, rows: int) -> bytes:
-    """Payload of VERT: distinct vertices of shape (n, 2), int32, in any order."""
-    points = vertices[np.argsort(_halving_keys(vertices, columns, rows))]
-    return _encode(lambda coder, data: _code_positions(coder, data, points, columns, rows))
+# Zero bytes that a writer may cut off the end: as many as the coder holds in advance. So what a
+# stream can hold is bounded by its length.
+_CUT_BYTES: Final = 4
 
 
-def decode_positions(payload: bytes, offset: int, n: int, columns: int, rows: int) -> Int32Array:
-    """Vertices of a VERT payload in raster order, shape (n, 2), int32, distinct."""
-    points = np.zeros((n, 2), dtype=np.int32)
+def encode_mesh(mesh: Mesh, header: Header) -> bytes:
+    """Content of the mesh chunk: a mesh that passed its check, in canonical order."""
 
-    def code(coder: Int64Array, data: UInt8Array) -> int:
-        return _code_positions(coder, data, points, columns, rows)
+    def write(encoder: Encoder) -> None:
+        encoder.positions(mesh.vertices, header.columns, header.rows)
+        if header.connectivity == LISTED_TRIANGLES:
+            encoder.triangles(mesh.triangles, mesh.n_vertices)
+        encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
 
-    _decode(payload, offset, "positions", code)
-    result: Int32Array = points[np.argsort(raster_keys(points))]
-    return result
-
-
-def encode_triangles(triangles: Int32Array, n_vertices: int) -> bytes:
-    """Payload of TRIS: triangles of shape (m, 3), int32, in canonical order."""
-    canonical = np.array(triangles, dtype=np.int32)
-    return _encode(lambda coder, data: _code_triangles(coder, data, canonical, n_vertices))
+    return encode(write)
 
 
-def decode_triangles(payload: bytes, offset: int, m: int, n_vertices: int) -> Int32Array:
-    """Triangles of a TRIS payload, shape (m, 3), int32, indices below `n_vertices`."""
-    triangles = np.zeros((m, 3), dtype=np.int32)
+def decode_mesh(content: bytes, offset: int, header: Header) -> tuple[Mesh, dict[str, int]]:
+    """The mesh of a content that starts at an offset of the file, and the bytes of its parts.
 
-    def code(coder: Int64Array, data: UInt8Array) -> int:
-        return _code_triangles(coder, data, triangles, n_vertices)
-
-    _decode(payload, offset, "triangles", code)
-    return triangles
-
-
-def encode_levels(
-    levels: Int32Array, vertices: Int32Array, triangles: Int32Array, lattice: ColorLattice
-) -> bytes:
-    """Payload of COLR: levels of shape (n, c), int32, for vertices in raster order."""
-    own = np.array(levels, dtype=np.int32)
-    return _encode(lambda coder, data: _code_levels(coder, data, vertices, triangles, own, lattice))
-
-
-def decode_levels(
-    payload: bytes,
-    offset: int,
-    vertices: Int32Array,
-    triangles: Int32Array,
-    lattice: ColorLattice,
-) -> Int32Array:
-    """Levels of a COLR payload, shape (n, c), int32, within the lattice's bounds.
-
-    The mesh of `vertices` and `triangles` has to have passed its check.
+    Raises
+    ------
+    FormatError
+        With the code ``positions``, ``triangles``, ``geometry`` or ``colors``.
     """
-    levels = np.zeros((len(vertices), lattice.n_components), dtype=np.int32)
+    decoder = Decoder(content, offset)
+    vertices = decoder.positions(header.n_vertices, header.columns, header.rows)
+    if header.connectivity == LISTED_TRIANGLES:
+        triangles = decoder.triangles(_n_triangles(vertices, header), header.n_vertices)
+    else:
+        triangles = delaunay(vertices)
+    bare = Mesh(
+        header.width,
+        header.height,
+        vertices,
+        triangles,
+        np.zeros((header.n_vertices, header.n_components), dtype=np.int32),
+        ColorLattice(header.steps),
+        header.subdivision,
+    )
+    try:
+        bare.check()
+    except ValueError as error:
+        raise FormatError("geometry", str(error), offset) from None
+    levels = decoder.levels(bare.vertices, bare.triangles, bare.lattice)
+    return bare.replaced(levels=levels), decoder.finish()
 
-    def code(coder: Int64Array, data: UInt8Array) -> int:
-        return _code_levels(coder, data, vertices, triangles, levels, lattice)
 
-    _decode(payload, offset, "colors", code)
-    return levels
+def _n_triangles(vertices: Int32Array, header: Header) -> int:
+    """How many triangles cover the canvas: Euler's formula leaves no choice."""
+    on_border = (vertices == 0) | (vertices == [header.columns - 1, header.rows - 1])
+    return 2 * len(vertices) - 2 - int(on_border.any(axis=1).sum())
 
 
-def _encode(code: Code) -> bytes:
-    """Bytes that a coding function writes; where there is too little room it writes twice."""
+class Encoder:
+    """Writes the parts of a mesh into one stream, one after the other.
+
+    Parameters
+    ----------
+    room : int
+        Bytes for which there is room; more are counted, but not kept.
+    """
+
+    def __init__(self, room: int) -> None:
+        self.coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
+        self.data = np.zeros(room, dtype=np.uint8)
+        entropy.start(self.coder, self.data, 0)
+
+    def positions(self, vertices: Int32Array, columns: int, rows: int) -> None:
+        """Write distinct vertices of shape (n, 2), int32, in any order."""
+        points = vertices[np.argsort(_halving_keys(vertices, columns, rows))]
+        _code_positions(self.coder, self.data, points, columns, rows)
+
+    def triangles(self, triangles: Int32Array, n_vertices: int) -> None:
+        """Write triangles of shape (m, 3), int32, in canonical order."""
+        own = np.array(triangles, dtype=np.int32)
+        status = _code_triangles(self.coder, self.data, own, n_vertices)
+        assert status == entropy.OK, "a checked mesh is always coded"
+
+    def levels(
+        self,
+        levels: Int32Array,
+        vertices: Int32Array,
+        triangles: Int32Array,
+        lattice: ColorLattice,
+    ) -> None:
+        """Write levels of shape (n, c), int32, of vertices in raster order."""
+        own = np.array(levels, dtype=np.int32)
+        status = _code_levels(self.coder, self.data, vertices, triangles, own, lattice)
+        assert status == entropy.OK, "a checked mesh is always coded"
+
+    def finish(self) -> bytes:
+        """What was written, zeros cut off at the end, and cut short where there was no room."""
+        length = entropy.finish(self.coder, self.data)
+        return self.data[: max(length, self.n_bytes - _CUT_BYTES)].tobytes()
+
+    @property
+    def n_bytes(self) -> int:
+        """Number of bytes written so far, whether there was room for them or not."""
+        return int(self.coder[entropy.POSITION])
+
+
+def encode(write: Callable[[Encoder], None]) -> bytes:
+    """Bytes that `write` lets an encoder write; where there is too little room it writes twice."""
     room = 1 << 16
     while True:
-        coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
-        data = np.zeros(room, dtype=np.uint8)
-        entropy.start(coder, data, 0)
-        status = code(coder, data)
-        assert status == entropy.OK, "a checked mesh is always coded"
-        length = entropy.finish(coder, data)
-        if coder[entropy.POSITION] <= room:
-            return data[:length].tobytes()
-        room = int(coder[entropy.POSITION])
+        encoder = Encoder(room)
+        write(encoder)
+        content = encoder.finish()
+        if encoder.n_bytes <= room:
+            return content
+        room = encoder.n_bytes
 
 
-def _decode(payload: bytes, offset: int, name: str, code: Code) -> None:
-    """Let a coding function read a payload to its end."""
-    coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
-    data = np.frombuffer(bytearray(payload), dtype=np.uint8)
-    entropy.start(coder, data, 1)
-    status = code(coder, data)
-    read = int(coder[entropy.POSITION])
-    if status != entropy.OK:
-        where = offset + min(read, len(payload))
-        raise FormatError(name, f"the coded {name} hold a number out of range", where)
-    if read < len(payload):
-        unused = len(payload) - read
-        raise FormatError(name, f"{unused} bytes follow the coded {name}", offset + read)
+class Decoder:
+    """Reads the parts of a mesh from one stream, in the order in which they were written.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole stream.
+    offset : int
+        Where it starts in the file, for the errors.
+    """
+
+    def __init__(self, content: bytes, offset: int) -> None:
+        self.coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
+        self.data = np.frombuffer(bytearray(content), dtype=np.uint8)
+        self.offset = offset
+        self.sizes: dict[str, int] = {}
+        entropy.start(self.coder, self.data, 1)
+
+    def positions(self, n: int, columns: int, rows: int) -> Int32Array:
+        """Vertices in raster order, shape (n, 2), int32, distinct."""
+        points = np.zeros((n, 2), dtype=np.int32)
+        self._end("positions", _code_positions(self.coder, self.data, points, columns, rows))
+        result: Int32Array = points[np.argsort(raster_keys(points))]
+        return result
+
+    def triangles(self, m: int, n_vertices: int) -> Int32Array:
+        """Triangles, shape (m, 3), int32, indices below `n_vertices`."""
+        triangles = np.zeros((m, 3), dtype=np.int32)
+        self._end("triangles", _code_triangles(self.coder, self.data, triangles, n_vertices))
+        return triangles
+
+    def levels(
+        self, vertices: Int32Array, triangles: Int32Array, lattice: ColorLattice
+    ) -> Int32Array:
+        """Levels of shape (n, c), int32, within the lattice's bounds.
+
+        The mesh of `vertices` and `triangles` has to have passed its check.
+        """
+        levels = np.zeros((len(vertices), lattice.n_components), dtype=np.int32)
+        status = _code_levels(self.coder, self.data, vertices, triangles, levels, lattice)
+        self._end("colors", status)
+        return levels
+
+    def finish(self) -> dict[str, int]:
+        """Bytes of each part, rounded so that they add up to the content, which must end here."""
+        read, length = int(self.coder[entropy.POSITION]), len(self.data)
+        if read < length:
+            unused = f"{length - read} bytes follow the coded colors"
+            raise FormatError("colors", unused, self.offset + read)
+        self.sizes["colors"] += length - sum(self.sizes.values())
+        return self.sizes
+
+    def _end(self, part: str, status: int) -> None:
+        """Refuse what was no such part, and note its size."""
+        read, length = int(self.coder[entropy.POSITION]), len(self.data)
+        if read > length + _CUT_BYTES:
+            raise FormatError(part, f"the mesh ends within the {part}", self.offset + length)
+        if status != entropy.OK:
+            where = self.offset + min(read, length)
+            raise FormatError(part, f"the coded {part} hold a number out of range", where)
+        # What the coder has narrowed its range by since the start is what the parts took so far.
+        so_far = read - log2(self.coder[entropy.RANGE]) / 8
+        self.sizes[part] = min(round(so_far), length) - sum(self.sizes.values())
 
 
 def _code_positions(

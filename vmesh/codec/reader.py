@@ -5,11 +5,9 @@ from __future__ import annotations
 import zlib
 
 from vmesh.codec import layout
-from vmesh.codec.layout import Chunk, Header
-from vmesh.codec.payloads import decode_levels, decode_positions, decode_triangles
-from vmesh.color_lattice import ColorLattice
+from vmesh.codec.layout import Chunk
+from vmesh.codec.payloads import decode_mesh
 from vmesh.errors import FormatError
-from vmesh.kernels.delaunay import delaunay
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 
@@ -31,59 +29,31 @@ def loads(data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMI
     LimitError
         If they are, but ask for more than `limits` allow.
     """
-    chunks = layout.read_chunks(bytes(memoryview(data)))
-    header = layout.read_header(chunks)
+    mesh, _ = measure(data, limits=limits)
+    return mesh
+
+
+def measure(
+    data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMITS
+) -> tuple[Mesh, dict[str, int]]:
+    """Mesh of the bytes of a ``.vmesh`` file, and how many of them its parts take.
+
+    Parameters and errors are those of :func:`loads`.
+
+    Returns
+    -------
+    Mesh
+    dict
+        Bytes of ``positions``, of ``triangles`` if they are listed, and of ``colors``. They share
+        one stream: a byte on the bound between two parts belongs to one of them.
+    """
+    header, chunks = layout.read_file(bytes(memoryview(data)))
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
-    by_tag = {chunk.tag: chunk for chunk in chunks}
-    bare = _read_geometry(header, by_tag, _read_metadata(chunks, limits))
-    colors = by_tag[layout.COLORS_TAG]
-    levels = decode_levels(
-        colors.content, colors.content_offset, bare.vertices, bare.triangles, bare.lattice
-    )
-    return bare.replaced(levels=levels)
-
-
-def _read_geometry(header: Header, by_tag: dict[bytes, Chunk], metadata: Metadata) -> Mesh:
-    """The mesh without its colours, checked."""
-    positions = by_tag[layout.POSITIONS_TAG]
-    vertices = decode_positions(
-        positions.content,
-        positions.content_offset,
-        header.n_vertices,
-        header.columns,
-        header.rows,
-    )
-    lattice = ColorLattice(header.steps)
-    if header.connectivity == layout.LISTED_TRIANGLES:
-        source = by_tag[layout.TRIANGLES_TAG]
-        triangles = decode_triangles(
-            source.content, source.content_offset, header.n_triangles, header.n_vertices
-        )
-    else:
-        source = positions
-        triangles = delaunay(vertices)
-    if len(triangles) != header.n_triangles:
-        raise FormatError(
-            "geometry",
-            f"expected {header.n_triangles} triangles, got {len(triangles)}",
-            source.content_offset,
-        )
-    mesh = Mesh(
-        header.width,
-        header.height,
-        vertices,
-        triangles,
-        lattice.zero_levels(header.n_vertices),
-        lattice,
-        header.subdivision,
-        metadata,
-    )
-    try:
-        mesh.check()
-    except ValueError as error:
-        raise FormatError("geometry", str(error), source.content_offset) from None
-    return mesh
+    *ancillary, coded = chunks
+    metadata = _read_metadata(ancillary, limits)
+    mesh, sizes = decode_mesh(coded.content, coded.content_offset, header)
+    return mesh.replaced(metadata=metadata), sizes
 
 
 def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
@@ -93,8 +63,6 @@ def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
     unknown = []
     total = 0
     for chunk in chunks:
-        if chunk.is_critical:
-            continue
         if chunk.tag in names:
             known[names[chunk.tag]] = block = _inflate(chunk, limits)
             total += len(block)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from vmesh.codec import layout
-from vmesh.codec.payloads import encode_levels, encode_positions, encode_triangles
+from vmesh.codec.payloads import encode_mesh
 from vmesh.errors import LimitError
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
@@ -32,18 +32,15 @@ def dumps(mesh: Mesh) -> bytes:
     ordered = mesh.canonical()
     implied = _are_implied(ordered)
     header = layout.Header(
-        major=layout.MAJOR_VERSION,
-        minor=layout.MINOR_VERSION,
         width=ordered.width,
         height=ordered.height,
         subdivision=ordered.subdivision,
-        n_components=ordered.n_components,
-        n_vertices=ordered.n_vertices,
-        n_triangles=ordered.n_triangles,
         connectivity=layout.IMPLIED_TRIANGLES if implied else layout.LISTED_TRIANGLES,
+        n_vertices=ordered.n_vertices,
         steps=ordered.lattice.steps,
     )
-    return layout.pack_file(_contents(ordered, header))
+    coded = (layout.MESH_TAG, encode_mesh(ordered, header))
+    return layout.pack_file(header, [*_metadata_contents(ordered.metadata), coded])
 
 
 def _are_implied(mesh: Mesh) -> bool:
@@ -54,19 +51,8 @@ def _are_implied(mesh: Mesh) -> bool:
         return False
 
 
-def _contents(mesh: Mesh, header: layout.Header) -> Iterator[tuple[bytes, bytes]]:
-    """Tag and content of every chunk of a canonical mesh, in order."""
-    yield layout.HEADER_TAG, header.pack()
-    yield from _metadata_contents(mesh.metadata)
-    yield layout.POSITIONS_TAG, encode_positions(mesh.vertices, header.columns, header.rows)
-    if header.connectivity == layout.LISTED_TRIANGLES:
-        yield layout.TRIANGLES_TAG, encode_triangles(mesh.triangles, mesh.n_vertices)
-    levels = encode_levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
-    yield layout.COLORS_TAG, levels
-    yield layout.END_TAG, b""
-
-
 def _metadata_contents(metadata: Metadata) -> Iterator[tuple[bytes, bytes]]:
+    """Tag and content of the chunks before the mesh."""
     for name, tag in layout.METADATA_TAGS.items():
         block = getattr(metadata, name)
         if block:

@@ -127,7 +127,7 @@ def _metadata_of(image: Image.Image, array: UInt8Array) -> Metadata:
     n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
         icc=profile if fits_icc(profile, n_components) else b"",
-        exif=exif,
+        exif=exif.removeprefix(b"Exif\0\0"),  # which belongs to JPEG
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )
 

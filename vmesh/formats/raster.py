@@ -135,8 +135,9 @@ def write_raster(
     if format_name in ("JPEG", "WEBP"):
         options["quality"] = quality
     if metadata is not None:
-        if metadata.exif and _takes_exif(format_name, image.mode, metadata.exif):
-            options["exif"] = metadata.exif
+        exif = b"Exif\0\0" + metadata.exif  # as JPEG wants it, and Pillow for all formats
+        if metadata.exif and _takes_exif(format_name, image.mode, exif):
+            options["exif"] = exif
         if fits_icc(metadata.icc, len(image.getbands())):
             options["icc_profile"] = metadata.icc
     image.save(stream, format_name, **options)
