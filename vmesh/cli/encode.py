@@ -35,10 +35,10 @@ def command(source: str, target: str, as_json: bool, quiet: bool, **options: Any
     if as_json and target == STANDARD:
         raise click.UsageError("--json and the file cannot both go to standard output")
     from vmesh.codec.writer import dumps
-    from vmesh.encoder.pipeline import STAGES, encode
+    from vmesh.encoder.pipeline import count_steps, encode
 
     started = time.perf_counter()
-    with show_progress("encoding", len(STAGES) + 2, quiet=quiet) as report:
+    with show_progress("encoding", count_steps(settings) + 2, quiet=quiet) as report:
         report("reading")
         picture = read_photograph(source, limits)
         mesh = encode(picture.array, metadata=picture.metadata, progress=report, **asdict(settings))

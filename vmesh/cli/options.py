@@ -9,16 +9,58 @@ from typing import Any, TypeVar, get_args
 import click
 
 from vmesh.color_lattice import MAX_STEP
-from vmesh.encoder.settings import ColorMode, Diffusion, Method, Sampler, Settings
+from vmesh.encoder.settings import (
+    DEFAULT_EFFORT,
+    DEFAULT_QUALITY,
+    MAX_EFFORT,
+    MAX_QUALITY,
+    ColorMode,
+    Diffusion,
+    Method,
+    Sampler,
+    Settings,
+)
 from vmesh.limits import DEFAULT_LIMITS, Limits
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 _ENCODER_OPTIONS = (
     click.option(
+        "-q",
+        "--quality",
+        type=click.IntRange(0, MAX_QUALITY),
+        help=f"Quality, {DEFAULT_QUALITY} unless another goal is given.",
+    ),
+    click.option(
+        "--target-size",
+        type=click.IntRange(1),
+        metavar="BYTES",
+        help="Size of the file: never above it, within 2 % below.",
+    ),
+    click.option(
+        "--target-psnr",
+        type=click.FloatRange(0, 99, min_open=True),
+        metavar="DB",
+        help="PSNR of the mesh: at least this, within 0.1 dB above.",
+    ),
+    click.option("--vertices", type=click.IntRange(4, 1 << 31), help="Number of vertices."),
+    click.option(
+        "--density",
+        type=click.FloatRange(0, 1, min_open=True),
+        help="Vertices per pixel instead of their number, such as 0.02.",
+    ),
+    click.option(
+        "-e",
+        "--effort",
+        type=click.IntRange(1, MAX_EFFORT),
+        default=DEFAULT_EFFORT,
+        show_default=True,
+        help="More time for a better mesh of the same size.",
+    ),
+    click.option(
         "--method",
         type=click.Choice(get_args(Method)),
-        default="blue-noise",
+        default="adaptive",
         show_default=True,
         help="How vertices are found.",
     ),
@@ -51,19 +93,9 @@ _ENCODER_OPTIONS = (
         help="Vertex colours by least squares, or those of single pixels.",
     ),
     click.option(
-        "--vertices", type=click.IntRange(4, 1 << 31), help="Number of vertices, met within 2 %."
-    ),
-    click.option(
-        "--density",
-        type=click.FloatRange(0, 1, min_open=True),
-        help="Vertices per pixel instead of their number, such as 0.02.",
-    ),
-    click.option(
         "--color-step",
         type=click.IntRange(1, MAX_STEP),
-        default=8,
-        show_default=True,
-        help="Rounding of the vertex colours; 1 for none.",
+        help="Rounding of the vertex colours, 1 for none; follows from the error unless given.",
     ),
     click.option(
         "--seed", type=click.IntRange(0), default=0, show_default=True, help="Random seed."

@@ -23,10 +23,10 @@ def convert(
     **options: Any,
 ) -> None:
     """Write a .vmesh file, or a photograph encoded on the way, in a vector format."""
-    from vmesh.encoder.pipeline import STAGES, encode
+    from vmesh.encoder.pipeline import count_steps, encode
     from vmesh.mesh import Mesh
 
-    with show_progress("converting", len(STAGES) + 2, quiet=quiet) as report:
+    with show_progress("converting", count_steps(settings) + 2, quiet=quiet) as report:
         report("reading")
         given = read_mesh_or_photograph(source, limits)
         if isinstance(given, Mesh):

@@ -34,6 +34,7 @@ METADATA_TAGS: Final = {"icc": b"i", "exif": b"e", "xmp": b"x"}
 
 IMPLIED_TRIANGLES: Final = 0
 LISTED_TRIANGLES: Final = 1
+FLIPPED_TRIANGLES: Final = 2
 
 _CHECKSUM = struct.Struct("<I")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]")
@@ -210,7 +211,7 @@ def _header_complaints(header: Header) -> Iterator[str]:
         yield f"expected a canvas of at most {MAX_LATTICE_SIDE} lattice units a side"
     if header.n_components not in (1, 3, 4):
         yield f"expected 1, 3 or 4 colour components, got {header.n_components}"
-    if header.connectivity not in (IMPLIED_TRIANGLES, LISTED_TRIANGLES):
+    if header.connectivity > FLIPPED_TRIANGLES:
         yield f"connectivity {header.connectivity} is unknown"
     if not 4 <= header.n_vertices <= header.columns * header.rows:
         yield f"expected 4 to {header.columns * header.rows} vertices, got {header.n_vertices}"

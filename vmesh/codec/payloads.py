@@ -4,31 +4,73 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import log2
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.codec.layout import LISTED_TRIANGLES, Header
+from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
+from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Header
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
-from vmesh.kernels.delaunay import delaunay
+from vmesh.kernels.delaunay import delaunay, flip_to_delaunay, sort_triangles
+from vmesh.kernels.half_edges import find_twins
 from vmesh.mesh import Mesh, raster_keys
 
 # Zero bytes that a writer may cut off the end: as many as the coder holds in advance. So what a
 # stream can hold is bounded by its length.
 _CUT_BYTES: Final = 4
+# Flips for each vertex, beyond which a list of the triangles is the shorter way.
+_MAX_FLIPS: Final = 4
 
 
-def encode_mesh(mesh: Mesh, header: Header) -> bytes:
+class Flips(NamedTuple):
+    """Flips that turn the canonical Delaunay triangles into those of a mesh, by the edges that go.
+
+    Attributes
+    ----------
+    removed, created : ndarray
+        Shape (k,), int64: edges as two vertices of 32 bits, the lower one first; `removed` ascends.
+    """
+
+    removed: Int64Array
+    created: Int64Array
+
+
+def find_flips(mesh: Mesh) -> Flips | None:
+    """Flips from the Delaunay triangles to those of a canonical mesh that passed its check.
+
+    None if they are too many for flips to be a good way of coding.
+    """
+    origin = mesh.triangles.reshape(-1).copy()
+    room = (2, _MAX_FLIPS * mesh.n_vertices)
+    created, removed = np.zeros(room, dtype=np.int64)
+    count = flip_to_delaunay(
+        mesh.vertices.astype(np.int64),
+        origin,
+        find_twins(mesh.triangles, mesh.n_vertices),
+        created,
+        removed,
+    )
+    if count < 0:
+        return None
+    # Read backwards: the edge that was created goes.
+    order = np.argsort(created[:count])
+    return Flips(created[:count][order], removed[:count][order])
+
+
+def encode_mesh(mesh: Mesh, header: Header, flips: Flips | None) -> bytes:
     """Content of the mesh chunk: a mesh that passed its check, in canonical order."""
+    implied = delaunay(mesh.vertices)
 
     def write(encoder: Encoder) -> None:
         encoder.positions(mesh.vertices, header.columns, header.rows)
-        if header.connectivity == LISTED_TRIANGLES:
+        encoder.levels(mesh.levels, build_hierarchy(mesh.vertices, implied), mesh.lattice)
+        if header.connectivity == FLIPPED_TRIANGLES and flips is not None:
+            encoder.flips(flips, implied, mesh)
+        elif header.connectivity == LISTED_TRIANGLES:
             encoder.triangles(mesh.triangles, mesh.n_vertices)
-        encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
 
     return encode(write)
 
@@ -39,29 +81,40 @@ def decode_mesh(content: bytes, offset: int, header: Header) -> tuple[Mesh, dict
     Raises
     ------
     FormatError
-        With the code ``positions``, ``triangles``, ``geometry`` or ``colors``.
+        With the code ``positions``, ``geometry``, ``colors`` or ``triangles``.
     """
     decoder = Decoder(content, offset)
     vertices = decoder.positions(header.n_vertices, header.columns, header.rows)
-    if header.connectivity == LISTED_TRIANGLES:
+    lattice = ColorLattice(header.steps)
+    triangles = delaunay(vertices)
+
+    def mesh(triangles: Int32Array, levels: Int32Array) -> Mesh:
+        """The mesh, once it has passed its check."""
+        result = Mesh(
+            header.width,
+            header.height,
+            vertices,
+            triangles,
+            levels,
+            lattice,
+            header.subdivision,
+        )
+        try:
+            result.check()
+        except ValueError as error:
+            raise FormatError("geometry", str(error), offset) from None
+        return result
+
+    # Delaunay triangles cover the canvas if its corners are vertices, whatever is done with them.
+    bare = mesh(triangles, np.zeros((len(vertices), lattice.n_components), dtype=np.int32))
+    levels = decoder.levels(build_hierarchy(vertices, triangles), lattice)
+    if header.connectivity == FLIPPED_TRIANGLES:
+        triangles = decoder.flips(vertices, triangles, levels)
+    elif header.connectivity == LISTED_TRIANGLES:
         triangles = decoder.triangles(_n_triangles(vertices, header), header.n_vertices)
     else:
-        triangles = delaunay(vertices)
-    bare = Mesh(
-        header.width,
-        header.height,
-        vertices,
-        triangles,
-        np.zeros((header.n_vertices, header.n_components), dtype=np.int32),
-        ColorLattice(header.steps),
-        header.subdivision,
-    )
-    try:
-        bare.check()
-    except ValueError as error:
-        raise FormatError("geometry", str(error), offset) from None
-    levels = decoder.levels(bare.vertices, bare.triangles, bare.lattice)
-    return bare.replaced(levels=levels), decoder.finish()
+        return bare.replaced(levels=levels), decoder.finish()
+    return mesh(triangles, levels), decoder.finish()
 
 
 def _n_triangles(vertices: Int32Array, header: Header) -> int:
@@ -95,17 +148,17 @@ class Encoder:
         status = _code_triangles(self.coder, self.data, own, n_vertices)
         assert status == entropy.OK, "a checked mesh is always coded"
 
-    def levels(
-        self,
-        levels: Int32Array,
-        vertices: Int32Array,
-        triangles: Int32Array,
-        lattice: ColorLattice,
-    ) -> None:
+    def levels(self, levels: Int32Array, hierarchy: Hierarchy, lattice: ColorLattice) -> None:
         """Write levels of shape (n, c), int32, of vertices in raster order."""
         own = np.array(levels, dtype=np.int32)
-        status = _code_levels(self.coder, self.data, vertices, triangles, own, lattice)
+        status = _code_levels(self.coder, self.data, own, hierarchy, lattice)
         assert status == entropy.OK, "a checked mesh is always coded"
+
+    def flips(self, flips: Flips, implied: Int32Array, mesh: Mesh) -> None:
+        """Write the flips that lead from the Delaunay triangles to those of a mesh."""
+        triangles = implied.copy()
+        status = _code_flips(self.coder, self.data, mesh.vertices, triangles, mesh.levels, flips)
+        assert status == entropy.OK, "flips that were found are always coded"
 
     def finish(self) -> bytes:
         """What was written, zeros cut off at the end, and cut short where there was no room."""
@@ -161,25 +214,28 @@ class Decoder:
         self._end("triangles", _code_triangles(self.coder, self.data, triangles, n_vertices))
         return triangles
 
-    def levels(
-        self, vertices: Int32Array, triangles: Int32Array, lattice: ColorLattice
-    ) -> Int32Array:
-        """Levels of shape (n, c), int32, within the lattice's bounds.
-
-        The mesh of `vertices` and `triangles` has to have passed its check.
-        """
-        levels = np.zeros((len(vertices), lattice.n_components), dtype=np.int32)
-        status = _code_levels(self.coder, self.data, vertices, triangles, levels, lattice)
-        self._end("colors", status)
+    def levels(self, hierarchy: Hierarchy, lattice: ColorLattice) -> Int32Array:
+        """Levels of shape (n, c), int32, within the lattice's bounds."""
+        levels = np.zeros((len(hierarchy.order), lattice.n_components), dtype=np.int32)
+        self._end("colors", _code_levels(self.coder, self.data, levels, hierarchy, lattice))
         return levels
+
+    def flips(self, vertices: Int32Array, implied: Int32Array, levels: Int32Array) -> Int32Array:
+        """Triangles of shape (m, 3), int32, in canonical order."""
+        triangles = implied.copy()
+        none = Flips(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+        status = _code_flips(self.coder, self.data, vertices, triangles, levels, none)
+        self._end("triangles", status)
+        return sort_triangles(triangles, len(vertices))
 
     def finish(self) -> dict[str, int]:
         """Bytes of each part, rounded so that they add up to the content, which must end here."""
         read, length = int(self.coder[entropy.POSITION]), len(self.data)
         if read < length:
-            unused = f"{length - read} bytes follow the coded colors"
-            raise FormatError("colors", unused, self.offset + read)
-        self.sizes["colors"] += length - sum(self.sizes.values())
+            part = list(self.sizes)[-1]
+            unused = f"{length - read} bytes follow the coded {part}"
+            raise FormatError(part, unused, self.offset + read)
+        self.sizes[list(self.sizes)[-1]] += length - sum(self.sizes.values())
         return self.sizes
 
     def _end(self, part: str, status: int) -> None:
@@ -213,14 +269,28 @@ def _code_triangles(
 def _code_levels(
     coder: Int64Array,
     data: UInt8Array,
-    vertices: Int32Array,
-    triangles: Int32Array,
     levels: Int32Array,
+    hierarchy: Hierarchy,
     lattice: ColorLattice,
 ) -> int:
     odds = entropy.fresh_odds(lattice.n_components * entropy.COMPONENT_CONTEXTS)
-    lowest, highest = lattice.level_bounds()
-    return entropy.code_levels(coder, data, odds, vertices, triangles, levels, lowest, highest)
+    return entropy.code_levels(coder, data, odds, *hierarchy, levels, *lattice.level_bounds())
+
+
+def _code_flips(
+    coder: Int64Array,
+    data: UInt8Array,
+    vertices: Int32Array,
+    triangles: Int32Array,
+    levels: Int32Array,
+    flips: Flips,
+) -> int:
+    odds = entropy.fresh_odds(entropy.FLIP_CONTEXTS)
+    points = vertices.astype(np.int64)
+    twins = find_twins(triangles, len(vertices))
+    luma = np.ascontiguousarray(levels[:, 0])
+    origin = triangles.reshape(-1)
+    return entropy.code_flips(coder, data, odds, points, luma, origin, twins, *flips)
 
 
 def _halving_keys(vertices: Int32Array, columns: int, rows: int) -> Int64Array:

@@ -5,12 +5,8 @@ from __future__ import annotations
 import zlib
 from collections.abc import Iterator
 
-import numpy as np
-
 from vmesh.codec import layout
-from vmesh.codec.payloads import encode_mesh
-from vmesh.errors import LimitError
-from vmesh.kernels.delaunay import delaunay
+from vmesh.codec.payloads import Flips, encode_mesh, find_flips
 from vmesh.mesh import Mesh, Metadata
 
 
@@ -30,25 +26,27 @@ def dumps(mesh: Mesh) -> bytes:
     """
     mesh.check()
     ordered = mesh.canonical()
-    implied = _are_implied(ordered)
+    connectivity, flips = _find_connectivity(ordered)
     header = layout.Header(
         width=ordered.width,
         height=ordered.height,
         subdivision=ordered.subdivision,
-        connectivity=layout.IMPLIED_TRIANGLES if implied else layout.LISTED_TRIANGLES,
+        connectivity=connectivity,
         n_vertices=ordered.n_vertices,
         steps=ordered.lattice.steps,
     )
-    coded = (layout.MESH_TAG, encode_mesh(ordered, header))
+    coded = (layout.MESH_TAG, encode_mesh(ordered, header, flips))
     return layout.pack_file(header, [*_metadata_contents(ordered.metadata), coded])
 
 
-def _are_implied(mesh: Mesh) -> bool:
-    """Whether the triangles of a canonical mesh follow from its vertices."""
-    try:
-        return np.array_equal(delaunay(mesh.vertices), mesh.triangles)
-    except LimitError:
-        return False
+def _find_connectivity(mesh: Mesh) -> tuple[int, Flips | None]:
+    """How the triangles of a canonical mesh are best told, and the flips if by flips."""
+    flips = find_flips(mesh)
+    if flips is None:
+        return layout.LISTED_TRIANGLES, None
+    if not len(flips.removed):
+        return layout.IMPLIED_TRIANGLES, None
+    return layout.FLIPPED_TRIANGLES, flips
 
 
 def _metadata_contents(metadata: Metadata) -> Iterator[tuple[bytes, bytes]]:

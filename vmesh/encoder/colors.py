@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -40,9 +41,28 @@ def sample_colors(image: UInt8Array, vertices: Int32Array, unit: int) -> Float64
     return colors
 
 
+@dataclass(frozen=True, slots=True)
+class NormalEquations:
+    """The squared error of a sample component as a function of the vertices' values.
+
+    Parameters
+    ----------
+    triangles : ndarray
+        Shape (m, 3), int32.
+    products : ndarray
+        Shape (m, 6), float64: each triangle's block, entries 00, 11, 22, 01, 12, 20.
+    moments : ndarray
+        Shape (n,), float64: the right-hand side.
+    """
+
+    triangles: Int32Array
+    products: Float64Array
+    moments: Float64Array
+
+
 def fit_colors(
     image: UInt8Array, vertices: Int32Array, triangles: Int32Array, unit: int
-) -> Float64Array:
+) -> tuple[Float64Array, list[NormalEquations]]:
     """Colours that make the rendered mesh closest to the picture in squared error.
 
     Solves (A'GA + r I) c = A'G y + r s, where A holds the barycentric weights of every pixel's
@@ -61,17 +81,21 @@ def fit_colors(
 
     Returns
     -------
-    ndarray
+    colors : ndarray
         Shape (n, c), float64, 0 to 255.
+    equations : list of NormalEquations
+        What was solved, for each sample component.
     """
     start = sample_colors(image, vertices, unit)
     whole = np.ones(image.shape[:2])
     if image.shape[2] != 4:
         return fit_components(image, whole, vertices, triangles, unit, start)
     visible = np.maximum(image[:, :, 3] / 255.0, _HIDDEN_WEIGHT)
-    colors = fit_components(image[:, :, :3], visible, vertices, triangles, unit, start[:, :3])
-    alpha = fit_components(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
-    return np.concatenate([colors, alpha], axis=1)
+    colors, first = fit_components(
+        image[:, :, :3], visible, vertices, triangles, unit, start[:, :3]
+    )
+    alpha, last = fit_components(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
+    return np.concatenate([colors, alpha], axis=1), first + last
 
 
 def fit_components(
@@ -81,7 +105,7 @@ def fit_components(
     triangles: Int32Array,
     unit: int,
     start: Float64Array,
-) -> Float64Array:
+) -> tuple[Float64Array, list[NormalEquations]]:
     """Colours closest to a picture with a weight for each pixel, each component for itself.
 
     Parameters
@@ -97,8 +121,10 @@ def fit_components(
 
     Returns
     -------
-    ndarray
+    colors : ndarray
         Shape (n, c), float64, 0 to 255.
+    equations : list of NormalEquations
+        What was solved, for each component.
     """
     products = np.zeros((len(triangles), 6))
     moments = np.zeros(start.shape)
@@ -107,4 +133,5 @@ def fit_components(
     accumulate(positions, triangles, samples, weights, products, moments)
     initial = np.ascontiguousarray(start)
     fitted = solve(triangles, products, moments, _RIDGE, initial, _TOLERANCE, _MAX_STEPS)
-    return np.clip(fitted, 0.0, 255.0)
+    equations = [NormalEquations(triangles, products, column) for column in moments.T]
+    return np.clip(fitted, 0.0, 255.0), equations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -11,20 +12,44 @@ import numpy.typing as npt
 from vmesh.arrays import UInt8Array, UInt16Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
+from vmesh.encoder.drafts import SUBDIVISION, Draft, Finisher, SampledDraft, price_of
 from vmesh.encoder.image import as_image, visible_planes, with_hidden_colors_replaced
+from vmesh.encoder.rate_control import guess_vertices, meet_psnr, meet_size, price_of_quality
+from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
-from vmesh.encoder.settings import Settings
-from vmesh.encoder.thinning import thin_vertices
+from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
 Progress = Callable[[str], None]
-"""Called with the name of each stage as it begins."""
+"""Called with the name of each stage as it begins, and again as it goes on."""
 
-STAGES: Final = ("sampling", "thinning", "triangulation", "colors", "quantization")
+STAGES: Final = ("sampling", "thinning", "refinement", "colors", "rate control")
 
-_SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
+# For each effort from 2 on: vertices per pixel that thinning starts from, and the shares of the
+# vertices that are exchanged in the rounds of refinement.
+_EFFORTS: Final = {
+    2: (0.04, (0.0,)),
+    3: (0.05, (0.0, 0.15)),
+    4: (0.06, (0.0, 0.2, 0.1)),
+    5: (0.06, (0.0, 0.2, 0.15, 0.1)),
+    6: (0.10, (0.0, 0.2, 0.2, 0.15, 0.1, 0.1, 0.05)),
+    7: (0.15, (0.0, 0.2, 0.2, 0.15, 0.15, 0.1, 0.1, 0.1, 0.05, 0.05, 0.0)),
+    8: (0.25, (0.0, *(0.2,) * 4, *(0.15,) * 4, *(0.1,) * 5, *(0.05,) * 3, 0.0)),
+    9: (0.25, (0.0, *(0.2,) * 8, *(0.15,) * 8, *(0.1,) * 8, *(0.05,) * 6, 0.0, 0.0)),
+}
+# Thinning starts from at least so many times the vertices wanted.
+_LEAST_CHOICE: Final = 3
+# A vertex stays while its removal costs more than this many bits: what it takes, and what it will
+# gain in its final place.
+_VERTEX_BITS: Final = 20.0
+# The error before refinement, for that after it.
+_REFINEMENT_GAIN: Final = 1.6
+
+_THINNING_STEPS: Final = 4  # about so many, for the display of progress
+
+_BLUE_NOISE_STEP: Final = 8
 
 
 def encode(
@@ -43,7 +68,7 @@ def encode(
     metadata : Metadata, optional
         What travels with the picture.
     progress : callable, optional
-        Called with the name of each of `STAGES` as it begins.
+        Called with the name of each of `STAGES` as it begins, and again as it goes on.
     **settings
         Fields of :class:`vmesh.Settings`.
 
@@ -55,44 +80,30 @@ def encode(
     Raises
     ------
     ValueError, TypeError
-        If the array or a setting is not as described.
+        If the array or a setting is not as described, or if a target cannot be met.
     """
     chosen = Settings(**settings)
     report = progress or _silent
     image = with_hidden_colors_replaced(as_image(array))
-    height, width = image.shape[:2]
-
+    if chosen.method == "blue-noise":
+        return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
     report("sampling")
-    _, samples = propose(image, chosen)
-    vertices = samples.vertices()
-
-    if chosen.method == "adaptive":
-        report("thinning")
-        vertices = thin_vertices(image, vertices, chosen.n_vertices(width, height))
-
-    report("triangulation")
-    triangles = delaunay(vertices)
-
+    draft = _sampled_draft(image, chosen) if chosen.effort == 1 else _remesh(image, chosen, report)
     report("colors")
-    unit = 1 << _SUBDIVISION
-    if chosen.colors == "fitted":
-        colors = fit_colors(image, vertices, triangles, unit)
-    else:
-        colors = sample_colors(image, vertices, unit)
+    finisher = Finisher(image, metadata or Metadata(), chosen.color_step)
+    if chosen.target_size is not None:
+        return meet_size(draft, finisher, chosen.target_size, lambda: report("rate control"))
+    if chosen.target_psnr is not None:
+        return meet_psnr(draft, finisher, chosen.target_psnr, lambda: report("rate control"))
+    return finisher.finish(draft)
 
-    report("quantization")
-    lattice = ColorLattice.uniform(image.shape[2], chosen.color_step)
-    levels = lattice.levels_from_colors(np.rint(colors))
-    return Mesh(
-        width,
-        height,
-        vertices,
-        triangles,
-        levels,
-        lattice,
-        _SUBDIVISION,
-        metadata or Metadata(),
-    )
+
+def count_steps(settings: Settings) -> int:
+    """About how often an encoding with these settings reports progress."""
+    if settings.method == "blue-noise" or settings.effort == 1:
+        return 3
+    _, shares = _EFFORTS[settings.effort]
+    return 3 + _THINNING_STEPS + len(shares)
 
 
 def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples]:
@@ -103,6 +114,7 @@ def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples
     image : ndarray
         Shape (h, w, c), uint8.
     settings : Settings
+        With a number of vertices or a density; otherwise gamma decides on the number of points.
 
     Returns
     -------
@@ -114,12 +126,98 @@ def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples
     salience = compute_salience(visible_planes(image), settings.gamma)
     samples = sample(
         salience,
-        n_points=settings.n_points(width, height),
+        n_points=settings.n_vertices(width, height),
         sampler=settings.sampler,
         diffusion=settings.diffusion,
         seed=settings.seed,
     )
     return salience, samples
+
+
+def _encode_blue_noise(
+    image: UInt8Array, settings: Settings, metadata: Metadata, report: Progress
+) -> Mesh:
+    """The method of the paper: vertices stay where they are sampled."""
+    height, width, n_components = image.shape
+    report("sampling")
+    _, samples = propose(image, settings)
+    vertices = samples.vertices()
+    triangles = delaunay(vertices)
+    report("colors")
+    if settings.colors == "fitted":
+        colors, _ = fit_colors(image, vertices, triangles, 1 << SUBDIVISION)
+    else:
+        colors = sample_colors(image, vertices, 1 << SUBDIVISION)
+    lattice = ColorLattice.uniform(n_components, settings.color_step or _BLUE_NOISE_STEP)
+    levels = lattice.levels_from_colors(np.rint(colors))
+    return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, metadata)
+
+
+def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
+    """Vertices where they are sampled, as many as the settings ask for."""
+    height, width = image.shape[:2]
+
+    def take(n_vertices: int) -> Samples:
+        _, samples = propose(image, _with_vertices(settings, n_vertices))
+        return samples
+
+    wanted = _wanted_vertices(settings, width, height)
+    draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
+    if wanted is None and settings.target_psnr is None:
+        price = price_of_quality(_quality(settings))
+        for _ in range(2):
+            # The price falls with about the 1.6th power of the number of vertices.
+            factor = (price_of(draft) / price) ** (1 / 1.6)
+            draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
+    return draft
+
+
+def _remesh(image: UInt8Array, settings: Settings, report: Progress) -> Draft:
+    """The vertices of a dense sample that matter most, moved to better places."""
+    height, width = image.shape[:2]
+    density, shares = _EFFORTS[settings.effort]
+    wanted = _wanted_vertices(settings, width, height)
+    start = round(max(density * width * height, _LEAST_CHOICE * (wanted or 0)))
+    start = max(4, min(start, width * height))
+    _, samples = propose(image, _with_vertices(settings, start))
+    draft = Remesher(image, samples.vertices())
+
+    def thinning() -> None:
+        report("thinning")
+
+    if wanted is not None:
+        draft.thin(wanted, thinning)
+    elif settings.target_psnr is not None:
+        allowed = image.size * 255.0**2 / 10.0 ** (settings.target_psnr / 10.0)
+        draft.thin(4, thinning, max_error=_REFINEMENT_GAIN * allowed)
+    else:
+        price = price_of_quality(_quality(settings))
+        draft.thin(4, thinning, max_cost=_VERTEX_BITS * price)
+    draft.refine(draft.n_vertices, shares, lambda: report("refinement"))
+    return draft
+
+
+def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:
+    """Number of vertices that the settings ask for, or that a file of their size may hold."""
+    if settings.target_size is not None:
+        return max(4, min(guess_vertices(settings.target_size), width * height))
+    return settings.n_vertices(width, height)
+
+
+def _quality(settings: Settings) -> int:
+    return DEFAULT_QUALITY if settings.quality is None else settings.quality
+
+
+def _with_vertices(settings: Settings, n_vertices: int) -> Settings:
+    """The settings with a number of vertices as the goal."""
+    return replace(
+        settings,
+        quality=None,
+        target_size=None,
+        target_psnr=None,
+        density=None,
+        vertices=n_vertices,
+    )
 
 
 def _silent(stage: str) -> None:

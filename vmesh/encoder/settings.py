@@ -8,15 +8,15 @@ from typing import Final, Literal, get_args
 
 from vmesh.color_lattice import MAX_STEP
 
-Method = Literal["blue-noise", "adaptive"]
+Method = Literal["adaptive", "blue-noise"]
 Sampler = Literal["multiclass", "channels"]
 Diffusion = Literal["zhou-fang", "ostromoukhov"]
 ColorMode = Literal["fitted", "sampled"]
 
-_ADAPTIVE_DENSITY: Final = 0.02
-# Vertices per pixel that thinning starts from: a blue-noise sample as dense as this ends within
-# 0.1 dB of starting from every pixel.
-_START_DENSITY: Final = 0.25
+MAX_QUALITY: Final = 100
+MAX_EFFORT: Final = 9
+DEFAULT_QUALITY: Final = 75
+DEFAULT_EFFORT: Final = 5
 
 _CHOICES: Final = {
     "method": get_args(Method),
@@ -24,45 +24,62 @@ _CHOICES: Final = {
     "diffusion": get_args(Diffusion),
     "colors": get_args(ColorMode),
 }
+_GOALS: Final = ("quality", "target_size", "target_psnr", "vertices", "density")
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
     """Settings of an encoding.
 
+    Of `quality`, `target_size`, `target_psnr`, `vertices` and `density` one at most is given.
+    Without any, the quality is 75 ("adaptive"), or gamma decides ("blue-noise").
+
     Parameters
     ----------
-    method : {"blue-noise", "adaptive"}
-        How vertices are found: sampled from the salience, or sampled densely and thinned down to
-        those that matter most.
+    method : {"adaptive", "blue-noise"}
+        How vertices are found: sampled densely, thinned to those that matter most and moved to
+        where they serve best; or sampled from the salience and left there.
+    quality : int, optional
+        0 to 100: the error that a bit has to save, the same for every picture ("adaptive").
+    target_size : int, optional
+        Bytes of the file, met from below within 2 % ("adaptive").
+    target_psnr : float, optional
+        Decibels over all samples, met from above within 0.1 dB ("adaptive").
+    vertices : int, optional
+        Vertices wanted, met exactly ("adaptive") or within 2 % ("blue-noise").
+    density : float, optional
+        Vertices wanted per pixel, above 0 and up to 1.
+    effort : int
+        1 to 9: time for a better mesh of the same size ("adaptive"). 1 leaves the vertices where
+        they were sampled.
     gamma : float
         Exponent of the salience, above 0; a smaller value gives more points.
-    vertices : int, optional
-        Vertices wanted, met within 2 % ("blue-noise") or exactly ("adaptive").
-    density : float, optional
-        Vertices wanted per pixel, above 0 and up to 1; not together with `vertices`. Without
-        either, `gamma` alone decides ("blue-noise"), or it is 0.02 ("adaptive").
     sampler : {"multiclass", "channels"}
         Colour planes sampled together, no two on one pixel, or each for itself.
     diffusion : {"zhou-fang", "ostromoukhov"}
         Coefficients of the error diffusion.
     colors : {"fitted", "sampled"}
-        Vertex colours by least squares over all pixels, or those of the vertices' pixels.
-    color_step : int
+        Vertex colours by least squares over all pixels, or those of the vertices' pixels
+        ("blue-noise").
+    color_step : int, optional
         Step of the luma lattice in sample units, 1 (no rounding) to 255; the other components'
-        steps follow from it.
+        steps follow from it. It follows from the error unless given.
     seed : int
         Start of the random thresholds.
     """
 
-    method: Method = "blue-noise"
-    gamma: float = 1.0
+    method: Method = "adaptive"
+    quality: int | None = None
+    target_size: int | None = None
+    target_psnr: float | None = None
     vertices: int | None = None
     density: float | None = None
+    effort: int = DEFAULT_EFFORT
+    gamma: float = 1.0
     sampler: Sampler = "multiclass"
     diffusion: Diffusion = "zhou-fang"
     colors: ColorMode = "fitted"
-    color_step: int = 8
+    color_step: int | None = None
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -72,34 +89,45 @@ class Settings:
                     f"expected {name} to be one of {', '.join(choices)}, "
                     f"got {getattr(self, name)!r}"
                 )
-        for name in ("vertices", "color_step", "seed"):
+        for name in ("quality", "target_size", "vertices", "effort", "color_step", "seed"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, index(getattr(self, name)))
+        self._check_ranges()
+        self._check_goals()
+
+    def _check_ranges(self) -> None:
         if not 0.0 < self.gamma <= 10.0:
             raise ValueError(f"expected a gamma above 0 and up to 10, got {self.gamma}")
-        if self.vertices is not None and self.density is not None:
-            raise ValueError("expected a number of vertices or a density, not both")
+        if self.quality is not None and not 0 <= self.quality <= MAX_QUALITY:
+            raise ValueError(f"expected a quality of 0 to {MAX_QUALITY}, got {self.quality}")
+        if self.target_size is not None and self.target_size < 1:
+            raise ValueError(f"expected a target_size of 1 byte or more, got {self.target_size}")
+        if self.target_psnr is not None and not 0.0 < self.target_psnr <= 99.0:
+            raise ValueError(
+                f"expected a target_psnr above 0 and up to 99 decibels, got {self.target_psnr}"
+            )
         if self.vertices is not None and self.vertices < 4:
             raise ValueError(f"expected at least 4 vertices, got {self.vertices}")
         if self.density is not None and not 0.0 < self.density <= 1.0:
             raise ValueError(f"expected a density above 0 and up to 1, got {self.density}")
-        if not 1 <= self.color_step <= MAX_STEP:
+        if not 1 <= self.effort <= MAX_EFFORT:
+            raise ValueError(f"expected an effort of 1 to {MAX_EFFORT}, got {self.effort}")
+        if self.color_step is not None and not 1 <= self.color_step <= MAX_STEP:
             raise ValueError(f"expected a color step of 1 to {MAX_STEP}, got {self.color_step}")
         if self.seed < 0:
             raise ValueError(f"expected a seed of 0 or more, got {self.seed}")
 
-    def n_vertices(self, width: int, height: int) -> int | None:
-        """Number of vertices wanted for a picture of this size, None to let gamma decide."""
-        density = self.density
-        if self.method == "adaptive" and self.vertices is None and density is None:
-            density = _ADAPTIVE_DENSITY
-        if density is not None:
-            return max(4, round(density * width * height))
-        return self.vertices
+    def _check_goals(self) -> None:
+        given = [name for name in _GOALS if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise ValueError(f"expected one of {' and '.join(given)}, not both")
+        if self.method == "blue-noise" and given and given[0] not in ("vertices", "density"):
+            raise ValueError(f"expected method adaptive with {given[0]}, got blue-noise")
+        if self.method == "adaptive" and self.colors == "sampled":
+            raise ValueError("expected method blue-noise with sampled colors, got adaptive")
 
-    def n_points(self, width: int, height: int) -> int | None:
-        """Number of points to sample: the vertices wanted, or the many that are thinned to them."""
-        wanted = self.n_vertices(width, height)
-        if self.method == "adaptive" and wanted is not None:
-            return max(wanted, round(_START_DENSITY * width * height))
-        return wanted
+    def n_vertices(self, width: int, height: int) -> int | None:
+        """Number of vertices wanted for a picture of this size, None if something else decides."""
+        if self.density is not None:
+            return max(4, round(self.density * width * height))
+        return self.vertices

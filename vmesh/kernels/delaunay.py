@@ -101,7 +101,7 @@ def must_flip(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
 
 
 @kernel
-def link(twin: Int32Array, e: int, f: int) -> None:
+def link(twin: Int32Array, e: int | np.int64, f: int | np.int64) -> None:
     """Make two half-edges each other's twin; either may be -1."""
     if e >= 0:
         twin[e] = f
@@ -110,7 +110,7 @@ def link(twin: Int32Array, e: int, f: int) -> None:
 
 
 @kernel
-def flip(origin: Int32Array, twin: Int32Array, e: int) -> None:
+def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
     """Turn the diagonal of the two triangles at half-edge e.
 
     Before, e runs from b to c and the triangles are (b, c, a) and (c, b, d); after, e's triangle
@@ -301,6 +301,71 @@ def sweep(
         hull_hash[key] = p
         last = p
     return n_edges // 3
+
+
+@kernel
+def flip_to_delaunay(
+    points: Int64Array,
+    origin: Int32Array,
+    twin: Int32Array,
+    created: Int64Array,
+    removed: Int64Array,
+) -> int:
+    """Flip the edges of a triangulation until it is the canonical Delaunay triangulation.
+
+    An edge that a flip removes never comes back: every flip lowers the surface that the
+    triangulation spans over the paraboloid (Lawson). So the flips, read backwards, lead from the
+    Delaunay triangulation to this one, and each edge is removed once at most.
+
+    Parameters
+    ----------
+    points : ndarray
+        Shape (n, 2), int64, in raster order.
+    origin, twin : ndarray
+        Shape (3 m,), int32: half-edges; overwritten.
+    created, removed : ndarray
+        Room for the flips: the edge that each one made and the one that it took away, the lower
+        vertex in the upper 32 bits.
+
+    Returns
+    -------
+    int
+        Number of flips, TOO_MANY_FLIPS if there is no room for them.
+    """
+    n_edges = origin.shape[0]
+    stack = np.empty(n_edges, np.int32)
+    waiting = np.zeros(n_edges, np.bool_)
+    size = 0
+    for inner in range(n_edges):
+        if twin[inner] > inner:
+            stack[size] = inner
+            size += 1
+            waiting[inner] = True
+    count = 0
+    while size > 0:
+        size -= 1
+        e = np.int64(stack[size])
+        waiting[e] = False
+        f = np.int64(twin[e])
+        if f < 0:
+            continue
+        e_next, e_prev = e - 2 if e % 3 == 2 else e + 1, e + 2 if e % 3 == 0 else e - 1
+        f_next, f_prev = f - 2 if f % 3 == 2 else f + 1, f + 2 if f % 3 == 0 else f - 1
+        a, b, c, d = origin[e_prev], origin[e], origin[f], origin[f_prev]
+        if not must_flip(points, a, b, c, d):
+            continue
+        if count == created.shape[0]:
+            return TOO_MANY_FLIPS
+        created[count] = np.int64(min(a, d)) << 32 | max(a, d)
+        removed[count] = np.int64(min(b, c)) << 32 | max(b, c)
+        count += 1
+        flip(origin, twin, e)
+        for g in (e, e_next, f, f_next):
+            if not waiting[g]:
+                stack[size] = g
+                size += 1
+                waiting[g] = True
+    return count
 
 
 @kernel

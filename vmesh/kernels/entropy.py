@@ -1,6 +1,6 @@
-"""The entropy coder of a .vmesh file and the models of its three payloads (spec, sections 5 to 8).
+"""The entropy coder of a .vmesh file and the models of the parts of a mesh (spec, sections 5 to 8).
 
-One kernel per payload serves both directions: what it codes it either takes from its arrays and
+One kernel per part serves both directions: what it codes it either takes from its arrays and
 writes, or reads and puts there, as ``coder[DECODING]`` says, so that the two cannot drift apart.
 
 An adaptive binary range coder, with the carry handled by the encoder alone::
@@ -50,10 +50,21 @@ N_SMALL = 8  # counts below this have a context of their own
 N_LARGE = 24
 SPLIT_CONTEXTS = N_AREA_CLASSES * N_SMALL * N_SMALL + N_LARGE * N_LARGE
 
-N_SPREADS = 10
+# Classes of how far the levels of a vertex's parents are spread, by their variance in 1/1024; one
+# more for the vertex without parents.
+SPREADS = (11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016)
+N_SPREADS = 14
 N_PEERS = 4
-SIZE_CONTEXTS = 23
-COMPONENT_CONTEXTS = N_SPREADS * N_PEERS * SIZE_CONTEXTS + N_PEERS
+N_UNARY = 14
+SIZE_CONTEXTS = N_UNARY + 2
+COMPONENT_CONTEXTS = N_SPREADS * N_PEERS * SIZE_CONTEXTS + 3
+
+# Classes of the sum of the cotangents of the angles across an edge, in sixteenths.
+ANGLES = (3, 7, 12, 18, 26, 38, 60)
+N_ANGLES = 8
+N_SLOPES = 5
+FLIP_CONTEXTS = 2 * N_ANGLES * N_SLOPES
+MAX_FLIPS = 1  # for each half-edge
 
 
 @kernel
@@ -66,7 +77,7 @@ def write_byte(coder: Int64Array, data: UInt8Array, byte: int) -> None:
 
 @kernel
 def read_byte(coder: Int64Array, data: UInt8Array) -> np.int64:
-    """Next byte of the payload; zeros beyond its end."""
+    """Next byte of the stream; zeros beyond its end."""
     position = coder[POSITION]
     coder[POSITION] = position + 1
     return np.int64(data[position]) if position < data.shape[0] else np.int64(0)
@@ -317,58 +328,29 @@ def code_triangles(
 
 
 @kernel
-def lower_neighbours(triangles: Int32Array, n_vertices: int) -> tuple[Int64Array, Int32Array]:
-    """For each vertex the neighbours of lower index, one for each triangle they share.
-
-    Returns
-    -------
-    starts : ndarray
-        Shape (n + 1,), int64: where the neighbours of each vertex start in the next array.
-    neighbours : ndarray
-        Shape (3 m,), int32.
-    """
-    starts = np.zeros(n_vertices + 1, np.int64)
-    for t in range(triangles.shape[0]):
-        for corner in range(3):
-            starts[max(triangles[t, corner], triangles[t, (corner + 1) % 3]) + 1] += 1
-    for v in range(n_vertices):
-        starts[v + 1] += starts[v]
-    filled = starts.copy()
-    neighbours = np.empty(3 * triangles.shape[0], np.int32)
-    for t in range(triangles.shape[0]):
-        for corner in range(3):
-            a, b = triangles[t, corner], triangles[t, (corner + 1) % 3]
-            high = max(a, b)
-            neighbours[filled[high]] = min(a, b)
-            filled[high] += 1
-    return starts, neighbours
-
-
-@kernel
 def code_levels(
     coder: Int64Array,
     data: UInt8Array,
     odds: Int64Array,
-    vertices: Int32Array,
-    triangles: Int32Array,
+    order: Int32Array,
+    starts: Int64Array,
+    parents: Int32Array,
     levels: Int32Array,
     lowest: Int32Array,
     highest: Int32Array,
 ) -> int:
-    """Code colour levels, each as its difference from the mean of the neighbours before it.
+    """Code colour levels, each as its difference from the mean of its parents.
 
-    A neighbour weighs 2**40 over its squared distance. The context of a difference is made of how
-    far the neighbours' levels are spread and of the size of the vertex's difference in the
-    component before.
+    All parents count alike for the first component; for the others those count more that are
+    closer in the first. The context of a difference is made of how far the parents' levels are
+    spread and of the vertex's differences in the components before.
 
     Parameters
     ----------
     odds : ndarray
         Shape (c * COMPONENT_CONTEXTS, 2), int64.
-    vertices : ndarray
-        Shape (n, 2), int32, in raster order.
-    triangles : ndarray
-        Shape (m, 3), int32, indices below n.
+    order, starts, parents : ndarray
+        The hierarchy of the vertices; parents come before their children.
     levels : ndarray
         Shape (n, c), int32: taken or filled in.
     lowest, highest : ndarray
@@ -379,29 +361,30 @@ def code_levels(
     int
         OK or BAD_NUMBER.
     """
-    n_vertices, n_components = levels.shape
-    starts, neighbours = lower_neighbours(triangles, n_vertices)
-    for v in range(n_vertices):
+    for i in range(order.shape[0]):
+        v = order[i]
         peer = 0
-        for z in range(n_components):
-            total, weights = np.int64(0), np.int64(0)
-            least, most = np.int64(highest[z]), np.int64(lowest[z])
-            for i in range(starts[v], starts[v + 1]):
-                u = neighbours[i]
-                dx = np.int64(vertices[u, 0]) - vertices[v, 0]
-                dy = np.int64(vertices[u, 1]) - vertices[v, 1]
-                weight = (np.int64(1) << 40) // (dx * dx + dy * dy)
+        for z in range(levels.shape[1]):
+            total, weights, squares = np.int64(0), np.int64(0), np.int64(0)
+            for j in range(starts[i], starts[i + 1]):
+                u = parents[j]
                 level = np.int64(levels[u, z])
+                weight = np.int64(4096)
+                if z > 0:
+                    weight //= 1 + 2 * abs(levels[u, 0] - levels[v, 0])
                 total += weight * level
+                squares += weight * level * level
                 weights += weight
-                least = min(least, level)
-                most = max(most, level)
+            prediction, spread, lean = np.int64(0), N_SPREADS - 1, 0
             if weights > 0:
                 prediction = (2 * total + weights) // (2 * weights)
-                spread = min(bit_length(most - least), N_SPREADS - 2)
-            else:  # the first vertex: every other one has a neighbour before it
-                prediction = np.int64(0)
-                spread = N_SPREADS - 1
+                variance = 1024 * (squares * weights - total * total) // (weights * weights)
+                spread = 0
+                while spread < N_SPREADS - 2 and variance >= SPREADS[spread]:
+                    spread += 1
+                # Whether the mean was rounded down or up by more than 3/20.
+                rest = 20 * (total - prediction * weights)
+                lean = 1 if rest > 3 * weights else (2 if rest < -3 * weights else 0)
             base = z * COMPONENT_CONTEXTS
             context = base + (spread * N_PEERS + peer) * SIZE_CONTEXTS
             error = levels[v, z] - prediction
@@ -410,13 +393,172 @@ def code_levels(
                 return BAD_NUMBER
             negative = 0
             if size > 0:
-                sign_context = base + N_SPREADS * N_PEERS * SIZE_CONTEXTS + peer
+                sign_context = base + N_SPREADS * N_PEERS * SIZE_CONTEXTS + lean
                 negative = code_bit(coder, data, odds, sign_context, 1 if error < 0 else 0)
             level = prediction - size if negative == 1 else prediction + size
             if level < lowest[z] or level > highest[z]:
                 return BAD_NUMBER
             levels[v, z] = level
-            peer = min(bit_length(size), N_PEERS - 1)
+            peer = min(peer + bit_length(size), N_PEERS - 1)
+    return OK
+
+
+@kernel
+def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
+    """Code the size of a difference: in unary up to N_UNARY, what is more in bits of its length.
+
+    Uses SIZE_CONTEXTS contexts from c. Returns -1 if it is 2**10 or more beyond N_UNARY.
+    """
+    coded = 0
+    while coded < N_UNARY:
+        if code_bit(coder, data, odds, c + coded, 1 if size > coded else 0) == 0:
+            return coded
+        coded += 1
+    rest = size - N_UNARY + 1
+    length = 0
+    while code_bit(coder, data, odds, c + N_UNARY, 1 if rest >> (length + 1) > 0 else 0) == 1:
+        length += 1
+        if length > 10:
+            return -1
+    value = 1
+    for i in range(length):
+        bit = (rest >> (length - 1 - i)) & 1
+        value = (value << 1) | code_bit(coder, data, odds, c + N_UNARY + 1, bit)
+    return N_UNARY - 1 + value
+
+
+@kernel
+def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
+    """Turn the diagonal of the two triangles at half-edge e; the same as that of ``delaunay``."""
+    f = twin[e]
+    e_prev = e + 2 if e % 3 == 0 else e - 1
+    f_prev = f + 2 if f % 3 == 0 else f - 1
+    outer_e = twin[e_prev]
+    outer_f = twin[f_prev]
+    origin[e] = origin[f_prev]
+    origin[f] = origin[e_prev]
+    twin[e] = outer_f
+    twin[f] = outer_e
+    if outer_f >= 0:
+        twin[outer_f] = e
+    if outer_e >= 0:
+        twin[outer_e] = f
+    twin[e_prev] = f_prev
+    twin[f_prev] = e_prev
+
+
+@kernel
+def cotangent(points: Int64Array, a: int, b: int, c: int) -> tuple[int, int]:
+    """Cotangent of the angle at a in sixteenths, rounded down, and the doubled area of a, b, c."""
+    bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+    cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
+    area = bx * cy - by * cx
+    return 16 * (bx * cx + by * cy) // max(area, 1), area
+
+
+@kernel
+def code_flips(
+    coder: Int64Array,
+    data: UInt8Array,
+    odds: Int64Array,
+    points: Int64Array,
+    levels: Int32Array,
+    origin: Int32Array,
+    twin: Int32Array,
+    removed: Int64Array,
+    created: Int64Array,
+) -> int:
+    """Code which edges of the Delaunay triangulation are flipped, one bit for each in question.
+
+    A queue holds the edges in question: at first all inner edges, then the four sides around each
+    flipped one. An edge whose quad is not strictly convex is passed over. The context is made of
+    the angles across the edge, of the differences of luma along it and along the other diagonal,
+    and of whether the edge is looked at for the first time.
+
+    Parameters
+    ----------
+    odds : ndarray
+        Shape (FLIP_CONTEXTS, 2), int64.
+    points : ndarray
+        Shape (n, 2), int64.
+    levels : ndarray
+        Shape (n,), int32: luma.
+    origin, twin : ndarray
+        Shape (3 m,), int32: half-edges of the canonical Delaunay triangles; on return those of
+        the coded mesh.
+    removed, created : ndarray
+        Shape (k,), int64: when writing, the flips to make, as pairs of the edge that goes, in
+        ascending order, and of the one that comes, the lower vertex in the upper 32 bits.
+
+    Returns
+    -------
+    int
+        OK, or BAD_NUMBER if there are more flips than MAX_FLIPS for each half-edge.
+    """
+    n_edges = origin.shape[0]
+    # A ring of places: an edge waits once at most.
+    queue = np.empty(n_edges, np.int32)
+    waiting = np.zeros(n_edges, np.bool_)
+    size, at, n_first = 0, 0, 0
+    for inner in range(n_edges):
+        if twin[inner] > inner:
+            queue[size] = inner
+            waiting[inner] = True
+            size += 1
+    n_first = size
+    n_flips = 0
+    while size > 0:
+        e = np.int64(queue[at])
+        at = at + 1 if at + 1 < n_edges else 0
+        size -= 1
+        first = 1 if n_first > 0 else 0
+        n_first -= first
+        waiting[e] = False
+        f = np.int64(twin[e])
+        if f < 0:
+            continue
+        if origin[e] > origin[f]:
+            e, f = f, e
+        e_next, e_prev = e - 2 if e % 3 == 2 else e + 1, e + 2 if e % 3 == 0 else e - 1
+        f_next, f_prev = f - 2 if f % 3 == 2 else f + 1, f + 2 if f % 3 == 0 else f - 1
+        a, b, c, d = origin[e_prev], origin[e], origin[f], origin[f_prev]
+        _, left = cotangent(points, a, d, c)
+        _, right = cotangent(points, d, a, b)
+        if left <= 0 or right <= 0:
+            continue
+        at_a, _ = cotangent(points, a, b, c)
+        at_d, _ = cotangent(points, d, c, b)
+        angles = 0
+        while angles < N_ANGLES - 1 and at_a + at_d >= ANGLES[angles]:
+            angles += 1
+        along, across = abs(levels[b] - levels[c]), abs(levels[a] - levels[d])
+        if along == across:
+            slope = 2
+        elif along < across:
+            slope = 0 if 2 * along < across else 1
+        else:
+            slope = 4 if 2 * across < along else 3
+        bit = 0
+        if coder[DECODING] == 0:
+            edge = np.int64(b) << 32 | c
+            place = np.searchsorted(removed, edge)
+            if place < removed.shape[0] and removed[place] == edge:
+                bit = 1 if created[place] == np.int64(min(a, d)) << 32 | max(a, d) else 0
+        context = (first * N_ANGLES + angles) * N_SLOPES + slope
+        if code_bit(coder, data, odds, context, bit) == 0:
+            continue
+        n_flips += 1
+        if n_flips > MAX_FLIPS * n_edges:
+            return BAD_NUMBER
+        flip(origin, twin, e)
+        # The four sides, from c around; those on the border do not wait.
+        for g in (e_next, f, f_next, e):
+            h = twin[g]
+            if h >= 0 and not waiting[g] and not waiting[h]:
+                end = at + size
+                queue[end if end < n_edges else end - n_edges] = g
+                waiting[g] = True
+                size += 1
     return OK
 
 
@@ -427,29 +569,6 @@ def bit_length(number: int | np.int64) -> int:
     while number >> length > 0:
         length += 1
     return length
-
-
-@kernel
-def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
-    """Code the size of a difference: its bit length in unary, then its lower bits.
-
-    Uses SIZE_CONTEXTS contexts from c: 10 for the length, 7 for the bit below the leading one, 6
-    for those after it. Returns -1 if the length is more than 10.
-    """
-    length = bit_length(size)
-    coded = 0
-    while code_bit(coder, data, odds, c + min(coded, 9), 1 if coded < length else 0) == 1:
-        coded += 1
-        if coded > 10:
-            return -1
-    if coded == 0:
-        return 0
-    value = 1
-    for i in range(coded - 1):
-        context = c + 10 + (min(coded, 8) - 2 if i == 0 else 4 + min(coded, 8))
-        bit = (size >> (coded - 2 - i)) & 1
-        value = (value << 1) | code_bit(coder, data, odds, context, bit)
-    return value
 
 
 def fresh_odds(n_contexts: int) -> Int64Array:

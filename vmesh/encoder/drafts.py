@@ -1,0 +1,108 @@
+"""Drafts: meshes of a picture whose number of vertices can still be changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+from typing import Final, Protocol
+
+import numpy as np
+
+from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.color_lattice import MAX_STEP, ColorLattice
+from vmesh.encoder.colors import fit_colors
+from vmesh.encoder.quantization import quantize
+from vmesh.encoder.sampling import Samples
+from vmesh.kernels.delaunay import delaunay
+from vmesh.mesh import Mesh, Metadata
+
+SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
+
+# The luma step for a root mean square error of 1. Measured on four photographs at three densities
+# each: 0.8, 1.0, 1.3 and 1.7 times as much change the PSNR at equal bytes by -0.03, 0, -0.04 and
+# -0.19 dB.
+_STEP: Final = 1.08
+# The error falls with about the 0.85th power of the vertices, and a vertex takes about 19 bits:
+# what a bit is worth in squared error, for an error and a number of vertices.
+_PRICE: Final = 0.045
+
+
+class Draft(Protocol):
+    """A mesh of a picture that is not final yet."""
+
+    n_vertices: int
+    error: float
+    """Squared error with fitted colours that are not rounded, summed over all samples."""
+
+    def resize(self, n_vertices: int) -> None:
+        """Change the number of vertices, as far as the picture allows."""
+
+    def geometry(self) -> tuple[Int32Array, Int32Array]:
+        """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""
+
+
+def price_of(draft: Draft) -> float:
+    """Squared error that a bit is worth at a draft's number of vertices."""
+    return _PRICE * draft.error / draft.n_vertices
+
+
+class SampledDraft:
+    """Vertices as they were sampled, and their Delaunay triangles.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    propose : callable
+        Samples of about a number of vertices.
+    """
+
+    def __init__(self, image: UInt8Array, propose: Callable[[int], Samples], n: int) -> None:
+        self._image = image
+        self._propose = propose
+        self.resize(n)
+
+    def resize(self, n_vertices: int) -> None:
+        """Sample about this many vertices."""
+        self._vertices = self._propose(n_vertices).vertices()
+        self._triangles = delaunay(self._vertices)
+        self.n_vertices = len(self._vertices)
+        colors, equations = fit_colors(self._image, self._vertices, self._triangles, 2)
+        # At the solution of A'A c = A'y the squared error is y'y - c'A'y.
+        fitted = sum(float(e.moments @ colors[:, z]) for z, e in enumerate(equations))
+        self.error = max(0.0, float(np.square(self._image, dtype=np.float64).sum()) - fitted)
+
+    def geometry(self) -> tuple[Int32Array, Int32Array]:
+        """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""
+        return self._vertices, self._triangles
+
+
+@dataclass(frozen=True, slots=True)
+class Finisher:
+    """Makes meshes of drafts.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8.
+    metadata : Metadata
+    color_step : int or None
+        Step of the luma lattice; None lets the error decide.
+    """
+
+    image: UInt8Array
+    metadata: Metadata
+    color_step: int | None
+
+    def finish(self, draft: Draft) -> Mesh:
+        """Mesh of a draft: colours fitted and rounded to levels that are worth their bits."""
+        height, width, n_components = self.image.shape
+        vertices, triangles = draft.geometry()
+        colors, equations = fit_colors(self.image, vertices, triangles, 1 << SUBDIVISION)
+        step = self.color_step
+        if step is None:
+            step = round(_STEP * sqrt(draft.error / self.image.size))
+        lattice = ColorLattice.uniform(n_components, min(max(step, 1), MAX_STEP))
+        levels = quantize(equations, colors, vertices, lattice, price_of(draft))
+        return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, self.metadata)

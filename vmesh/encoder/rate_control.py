@@ -1,0 +1,128 @@
+"""Rate control: how many vertices a mesh needs for a wanted quality, size or error.
+
+One Lagrangian decides everything, the price of a bit in squared error: which vertices are worth
+their bits, which flips, and which levels. Fewer vertices go with a higher price, so the number of
+vertices is the one thing to search for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import log10
+from typing import Final
+
+import numpy as np
+
+from vmesh.arrays import UInt8Array
+from vmesh.codec.writer import dumps
+from vmesh.encoder.drafts import Draft, Finisher
+from vmesh.kernels.scanline import SUBPIXEL, fill
+from vmesh.mesh import Mesh
+
+# At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
+# factor.
+_PRICE_AT_75: Final = 200.0
+_PRICE_FACTOR: Final = 15.0
+
+# A first guess for a size: bytes of the frame, and bits of a vertex.
+_FRAME_BYTES: Final = 28
+_VERTEX_BITS: Final = 18.0
+
+_MAX_ATTEMPTS: Final = 12
+_SIZE_TOLERANCE: Final = 0.02
+_PSNR_TOLERANCE: Final = 0.1
+# Decibels that twice as many vertices gain.
+_GAIN: Final = 2.4
+
+
+def price_of_quality(quality: int) -> float:
+    """Squared error that a bit has to save at a quality of 0 to 100."""
+    return float(_PRICE_AT_75 * _PRICE_FACTOR ** ((75 - quality) / 25))
+
+
+def guess_vertices(target_size: int) -> int:
+    """Number of vertices to start from for a file of a size."""
+    return max(4, round(8 * (target_size - _FRAME_BYTES) / _VERTEX_BITS))
+
+
+def meet_size(
+    draft: Draft, finisher: Finisher, target_size: int, report: Callable[[], None]
+) -> Mesh:
+    """The best mesh whose file is not larger than `target_size`, and within 2 % of it.
+
+    Raises
+    ------
+    ValueError
+        If the smallest mesh is larger.
+    """
+    best: Mesh | None = None
+    best_size = 0
+    for _ in range(_MAX_ATTEMPTS):
+        mesh = finisher.finish(draft)
+        size = len(dumps(mesh))
+        if best_size < size <= target_size:
+            best, best_size = mesh, size
+        if (1 - _SIZE_TOLERANCE) * target_size <= size <= target_size:
+            break
+        before = draft.n_vertices
+        bits = 8 * max(size - _FRAME_BYTES, 1) / before
+        aim = (1 - 0.3 * _SIZE_TOLERANCE) * target_size
+        change = round(8 * (aim - size) / bits)
+        change = min(change, -1) if size > target_size else max(change, 1)
+        draft.resize(max(4, before + change))
+        report()
+        if draft.n_vertices == before:
+            break
+    if best is None:
+        raise ValueError(f"the smallest file of this picture takes {size} bytes")
+    return best
+
+
+def meet_psnr(
+    draft: Draft, finisher: Finisher, target_psnr: float, report: Callable[[], None]
+) -> Mesh:
+    """The smallest mesh found whose PSNR is at least `target_psnr`, and within 0.1 dB of it.
+
+    Raises
+    ------
+    ValueError
+        If no mesh of the picture reaches it.
+    """
+    best: Mesh | None = None
+    best_psnr = np.inf
+    low, high = 0, finisher.image.shape[0] * finisher.image.shape[1] + 1
+    for _ in range(_MAX_ATTEMPTS):
+        mesh = finisher.finish(draft)
+        psnr = measure_psnr(finisher.image, mesh)
+        before = draft.n_vertices
+        if psnr >= target_psnr:
+            high = before
+            if psnr < best_psnr:
+                best, best_psnr = mesh, psnr
+        else:
+            low = before
+        if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:
+            break
+        aim = target_psnr + 0.5 * _PSNR_TOLERANCE
+        wanted = round(before * 2.0 ** ((aim - min(psnr, target_psnr + 12.0)) / _GAIN))
+        if not low < wanted < high:
+            wanted = (low + high + 1) // 2
+        draft.resize(max(4, wanted))
+        report()
+        if draft.n_vertices == before:
+            break
+    if best is None:
+        raise ValueError(f"a mesh of this picture reaches {psnr:.2f} dB, not {target_psnr:g}")
+    return best
+
+
+def measure_psnr(image: UInt8Array, mesh: Mesh) -> float:
+    """PSNR of a mesh at native size over all samples, in decibels; colours as they are seen."""
+    raster = np.zeros_like(image)
+    vertices = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
+    fill(vertices, mesh.triangles, mesh.lattice.colors_from_levels(mesh.levels), raster)
+    difference = raster.astype(np.float64) - image
+    if image.shape[2] == 4:
+        difference[:, :, :3] *= image[:, :, 3:] / 255.0
+    error = float(np.mean(difference * difference))
+    return 10.0 * log10(255.0**2 / error) if error > 0.0 else np.inf

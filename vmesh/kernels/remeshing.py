@@ -1,0 +1,725 @@
+"""Edits of a triangle mesh that bring it closer to a picture: remove, insert, move, flip.
+
+A :class:`Surface` is a triangulation of the picture's canvas with a colour at each vertex. Each of
+its triangles keeps the squared error that it leaves over the pixels whose centres it holds, so that
+what an edit gains or costs is known from the triangles it touches::
+
+    remove            insert            move              flip
+
+      b---c             a---b             a---b             a---b
+     /|  /|\\            |   /             |\\ /|             |  /|        ring    neighbours of v
+    a-v-- | d           | v               | v |             | / |                in positive order
+     \\|  \\|/            |/                |/ \\|             |/  |        outer   far half-edge of
+      f---e             c                 c---d             c---d                each of its sides
+
+Half-edges are those of ``delaunay``: triangle t has 3t, 3t+1, 3t+2, ``origin[e]`` is the vertex
+that half-edge e leaves and ``twin[e]`` the half-edge on its other side, -1 on the border. Triangles
+and vertices that are not in use have ``origin`` and ``leaving`` -1. Coordinates are in half pixels:
+pixel (x, y) has its centre at (2x + 1, 2y + 1).
+
+References
+----------
+L. Demaret, N. Dyn, A. Iske, "Image compression by linear splines over adaptive triangulations",
+Signal Processing 86(7), 2006: removal by least error. N. Dyn, D. Levin, S. Rippa, "Data dependent
+triangulations for piecewise linear interpolation", 1990: flips. O. Devillers, "On deletion in
+Delaunay triangulations", 1999: filling a hole by ears.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vmesh.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
+from vmesh.kernels.jit import inner_kernel, kernel
+
+MAX_RING = 48
+"""A vertex with more neighbours than this is left as it is."""
+
+# Columns of a row are found in floating point. They are fractions with denominators of at most
+# 2**18, so this bias decides on which side of an edge a pixel's centre lies without error.
+_BIAS = 1e-7
+# Holds a vertex whose triangles cover next to no pixel's centre, in pixels.
+_RIDGE = 1e-2
+# An edit has to gain at least this much squared error.
+_LEAST_GAIN = 1e-3
+
+
+class Surface(NamedTuple):
+    """A triangulation with colours, edited in place.
+
+    Attributes
+    ----------
+    points : ndarray
+        Shape (n, 2), int64, in half pixels.
+    colors : ndarray
+        Shape (n, c), float64.
+    origin, twin : ndarray
+        Shape (3 m,), int32.
+    leaving : ndarray
+        Shape (n,), int32: a half-edge that leaves each vertex.
+    errors : ndarray
+        Shape (m,), float64: squared error of each triangle.
+    restless : ndarray
+        Shape (n,), bool: whether something near the vertex changed since it was last looked at.
+    """
+
+    points: Int64Array
+    colors: Float64Array
+    origin: Int32Array
+    twin: Int32Array
+    leaving: Int32Array
+    errors: Float64Array
+    restless: BoolArray
+
+
+class Room(NamedTuple):
+    """Arrays that the kernels write to on the way: the star of a vertex, its filling, and sums."""
+
+    ring: Int32Array
+    outer: Int32Array
+    star: Int32Array
+    places: Int32Array
+    ears: Int32Array
+    rows: Int64Array
+    sums: Float64Array
+
+
+def make_room(height: int, n_components: int) -> Room:
+    """Room for a picture of this height."""
+    return Room(
+        ring=np.zeros(MAX_RING, np.int32),
+        outer=np.zeros(MAX_RING, np.int32),
+        star=np.zeros(MAX_RING, np.int32),
+        places=np.zeros(MAX_RING, np.int32),
+        ears=np.zeros((MAX_RING, 3), np.int32),
+        rows=np.zeros((height, 2), np.int64),
+        sums=np.zeros(2 + n_components),
+    )
+
+
+@inner_kernel
+def after(e: int) -> int:
+    """The next half-edge of the same triangle."""
+    return e - 2 if e % 3 == 2 else e + 1
+
+
+@inner_kernel
+def before(e: int) -> int:
+    """The half-edge before, of the same triangle."""
+    return e + 2 if e % 3 == 0 else e - 1
+
+
+@inner_kernel
+def cross(points: Int64Array, a: int, b: int, c: int) -> np.int64:
+    """Doubled signed area of three points."""
+    bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+    cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
+    area: np.int64 = bx * cy - by * cx
+    return area
+
+
+@inner_kernel
+def inside_circle(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
+    """Whether d is inside the circle through the positive triangle a, b, c.
+
+    In floating point: exact for differences below 5,000, and an error beyond that only costs a
+    little quality.
+    """
+    ax = float(points[a, 0] - points[d, 0])
+    ay = float(points[a, 1] - points[d, 1])
+    bx = float(points[b, 0] - points[d, 0])
+    by = float(points[b, 1] - points[d, 1])
+    cx = float(points[c, 0] - points[d, 0])
+    cy = float(points[c, 1] - points[d, 1])
+    return (
+        (ax * ax + ay * ay) * (bx * cy - by * cx)
+        + (bx * bx + by * by) * (cx * ay - cy * ax)
+        + (cx * cx + cy * cy) * (ax * by - ay * bx)
+    ) > 0.0
+
+
+# --- Sums over the pixels of a triangle -----------------------------------------------------------
+
+
+@inner_kernel
+def spans(
+    x0: int, y0: int, x1: int, y1: int, x2: int, y2: int, width: int, rows: Int64Array
+) -> tuple[int, int]:
+    """First row of a positive triangle and the row after its last; each row's columns in `rows`.
+
+    A centre on an edge counts if the triangle is to the right of the edge or below it.
+    """
+    if y1 < y0:
+        x0, y0, x1, y1 = x1, y1, x0, y0
+    if y2 < y1:
+        x1, y1, x2, y2 = x2, y2, x1, y1
+        if y1 < y0:
+            x0, y0, x1, y1 = x1, y1, x0, y0
+    first = y0 >> 1
+    last = y2 >> 1
+    if first >= last:
+        return 0, 0
+    middle = min(max(y1 >> 1, first), last)
+    long_side = 0 if (x1 - x0) * (y2 - y0) > (y1 - y0) * (x2 - x0) else 1
+    # Half the horizontal position less a half is a column; each edge is a line in it.
+    slope = (x2 - x0) / (y2 - y0)
+    column = 0.5 * (x0 + slope * (2 * first + 1 - y0)) - 0.5 - _BIAS
+    for y in range(first, last):
+        rows[y, long_side] = min(max(math.ceil(column), 0), width)
+        column += slope
+    short_side = 1 - long_side
+    if first < middle:
+        slope = (x1 - x0) / (y1 - y0)
+        column = 0.5 * (x0 + slope * (2 * first + 1 - y0)) - 0.5 - _BIAS
+        for y in range(first, middle):
+            rows[y, short_side] = min(max(math.ceil(column), 0), width)
+            column += slope
+    if middle < last:
+        slope = (x2 - x1) / (y2 - y1)
+        column = 0.5 * (x1 + slope * (2 * middle + 1 - y1)) - 0.5 - _BIAS
+        for y in range(middle, last):
+            rows[y, short_side] = min(max(math.ceil(column), 0), width)
+            column += slope
+    return first, last
+
+
+@inner_kernel
+def triangle_error(
+    surface: Surface, image: UInt8Array, room: Room, a: int, b: int, c: int
+) -> float:
+    """Squared error of a positive triangle over the pixels whose centres it holds."""
+    points, colors, rows = surface.points, surface.colors, room.rows
+    ax, ay = points[a, 0], points[a, 1]
+    bx, by = points[b, 0] - ax, points[b, 1] - ay
+    cx, cy = points[c, 0] - ax, points[c, 1] - ay
+    det = bx * cy - cx * by
+    if det <= 0:
+        return 0.0
+    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.shape[1], rows)
+    inverse = 1.0 / float(det)
+    error = 0.0
+    for z in range(image.shape[2]):
+        c0, c1, c2 = colors[a, z], colors[b, z] - colors[a, z], colors[c, z] - colors[a, z]
+        right = (c1 * cy - c2 * by) * inverse
+        down = (c2 * bx - c1 * cx) * inverse
+        for y in range(first, last):
+            start = rows[y, 0]
+            value = c0 + right * (2 * start + 1 - ax) + down * (2 * y + 1 - ay)
+            for x in range(start, rows[y, 1]):
+                difference = value - float(image[y, x, z])
+                error += difference * difference
+                value += 2.0 * right
+    return error
+
+
+@inner_kernel
+def add_moments(
+    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, a: int, b: int
+) -> None:
+    """Add to ``room.sums`` what the best colour of a vertex at (x, y) follows from.
+
+    In the triangle (x, y), a, b let w be the weight of the vertex at a pixel and r the pixel less
+    what a and b contribute: adds the sums of r r (over all components), of w w, and of w r for
+    each component. With colour k the squared error is rr - 2 k wr + k k ww; the best is wr / ww.
+    """
+    points, colors, rows, sums = surface.points, surface.colors, room.rows, room.sums
+    ax, ay = points[a, 0] - x, points[a, 1] - y
+    bx, by = points[b, 0] - x, points[b, 1] - y
+    det = ax * by - ay * bx
+    first, last = spans(x, y, x + ax, y + ay, x + bx, y + by, image.shape[1], rows)
+    inverse = 1.0 / float(det)
+    step_a, step_b = 2.0 * by * inverse, -2.0 * ay * inverse
+    for row in range(first, last):
+        start = rows[row, 0]
+        dx, dy = 2 * start + 1 - x, 2 * row + 1 - y
+        weight_a = (dx * by - dy * bx) * inverse
+        weight_b = (dy * ax - dx * ay) * inverse
+        for column in range(start, rows[row, 1]):
+            weight = 1.0 - weight_a - weight_b
+            sums[1] += weight * weight
+            for z in range(image.shape[2]):
+                rest = image[row, column, z] - weight_a * colors[a, z] - weight_b * colors[b, z]
+                sums[0] += rest * rest
+                sums[2 + z] += weight * rest
+            weight_a += step_a
+            weight_b += step_b
+
+
+@inner_kernel
+def error_at(
+    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, n_sides: int
+) -> float:
+    """Squared error of a star with its centre at (x, y), in the best colour for it.
+
+    The star's rim is ``room.ring``, of which the first `n_sides` sides count; infinite if one of
+    its triangles were not positive. ``room.sums`` holds what the colour follows from.
+    """
+    points, ring, sums = surface.points, room.ring, room.sums
+    for i in range(n_sides):
+        a, b = ring[i], ring[i + 1]
+        ax, ay = points[a, 0] - x, points[a, 1] - y
+        if ax * (points[b, 1] - y) - ay * (points[b, 0] - x) <= 0:
+            return np.inf
+    sums[:] = 0.0
+    for i in range(n_sides):
+        add_moments(surface, image, room, x, y, ring[i], ring[i + 1])
+    error: float = sums[0]
+    for z in range(image.shape[2]):
+        error -= sums[2 + z] * sums[2 + z] / (sums[1] + _RIDGE)
+    return error
+
+
+@inner_kernel
+def take_color(surface: Surface, room: Room, v: int) -> None:
+    """Give vertex v the best colour by ``room.sums``, if its triangles hold a pixel to tell."""
+    if room.sums[1] > _RIDGE:
+        for z in range(surface.colors.shape[1]):
+            surface.colors[v, z] = room.sums[2 + z] / (room.sums[1] + _RIDGE)
+
+
+@kernel
+def measure(surface: Surface, image: UInt8Array, room: Room) -> float:
+    """Compute the error of every triangle anew; their sum."""
+    total = 0.0
+    for t in range(surface.errors.shape[0]):
+        a, b, c = surface.origin[3 * t], surface.origin[3 * t + 1], surface.origin[3 * t + 2]
+        surface.errors[t] = triangle_error(surface, image, room, a, b, c) if a >= 0 else 0.0
+        total += surface.errors[t]
+    return total
+
+
+# --- Half-edges -----------------------------------------------------------------------------------
+
+
+@inner_kernel
+def link(twin: Int32Array, e: int, f: int) -> None:
+    """Make two half-edges each other's twin; f may be -1."""
+    twin[e] = f
+    if f >= 0:
+        twin[f] = e
+
+
+@inner_kernel
+def set_triangle(
+    surface: Surface, image: UInt8Array, room: Room, t: int, a: int, b: int, c: int
+) -> None:
+    """Make t the triangle a, b, c."""
+    e = 3 * t
+    surface.origin[e], surface.origin[e + 1], surface.origin[e + 2] = a, b, c
+    surface.leaving[a], surface.leaving[b], surface.leaving[c] = e, e + 1, e + 2
+    surface.restless[a] = surface.restless[b] = surface.restless[c] = True
+    surface.errors[t] = triangle_error(surface, image, room, a, b, c)
+
+
+@inner_kernel
+def free_triangle(surface: Surface, t: int) -> None:
+    """Take triangle t out of use."""
+    for e in range(3 * t, 3 * t + 3):
+        surface.origin[e] = -1
+        surface.twin[e] = -1
+    surface.errors[t] = 0.0
+
+
+@inner_kernel
+def collect_ring(surface: Surface, room: Room, v: int) -> tuple[int, int]:
+    """Neighbours, far half-edges and triangles around a vertex, into `room`.
+
+    Returns the number of neighbours, 0 if they are too many, and the number of triangles, which is
+    one less on the border. Inside, the first neighbour is repeated after the last.
+    """
+    origin, twin = surface.origin, surface.twin
+    ring, outer, star = room.ring, room.outer, room.star
+    first = surface.leaving[v]
+    start = first
+    # On the border, turn back to the first triangle.
+    while twin[start] >= 0:
+        start = after(twin[start])
+        if start == first:
+            break
+    e = start
+    n = 0
+    while True:
+        if n >= MAX_RING - 2:
+            return 0, 0
+        ring[n] = origin[after(e)]
+        outer[n] = twin[after(e)]
+        star[n] = e // 3
+        n += 1
+        if twin[before(e)] < 0:
+            ring[n] = origin[before(e)]
+            outer[n] = -1
+            return n + 1, n
+        e = twin[before(e)]
+        if e == start:
+            ring[n] = ring[0]
+            return n, n
+
+
+# --- Removing -------------------------------------------------------------------------------------
+
+
+@inner_kernel
+def fill_hole(points: Int64Array, room: Room, size: int) -> int:
+    """Triangulate the ring by clipping Delaunay ears; the number of triangles, -1 if it fails.
+
+    Each ear is three places in the ring, in ``room.ears``: the clipped one is in the middle.
+    """
+    ring, left, ears = room.ring, room.places, room.ears
+    for i in range(size):
+        left[i] = i
+    n = size
+    count = 0
+    while n >= 3:
+        clipped = -1
+        for i in range(n):
+            a, b, c = left[i - 1 if i > 0 else n - 1], left[i], left[i + 1 if i + 1 < n else 0]
+            if cross(points, ring[a], ring[b], ring[c]) <= 0:
+                continue
+            clipped = i
+            for k in range(n):
+                d = left[k]
+                if d not in (a, b, c) and inside_circle(points, ring[a], ring[b], ring[c], ring[d]):
+                    clipped = -1
+                    break
+            if clipped >= 0:
+                ears[count, 0], ears[count, 1], ears[count, 2] = a, b, c
+                break
+        if clipped < 0:
+            return -1
+        count += 1
+        n -= 1
+        for i in range(clipped, n):
+            left[i] = left[i + 1]
+        if n == 2:
+            break
+    return count
+
+
+@inner_kernel
+def removal_cost(surface: Surface, image: UInt8Array, room: Room, v: int) -> float:
+    """Squared error that the removal of a vertex would add.
+
+    Infinite for a corner of the canvas and where the hole cannot be filled.
+    """
+    ring, ears = room.ring, room.ears
+    size, n_sides = collect_ring(surface, room, v)
+    if size < 3:
+        return np.inf
+    if n_sides < size and cross(surface.points, ring[size - 1], v, ring[0]) != 0:
+        return np.inf
+    count = fill_hole(surface.points, room, size)
+    if count < 0:
+        return np.inf
+    cost = 0.0
+    for i in range(n_sides):
+        cost -= surface.errors[room.star[i]]
+    for i in range(count):
+        a, b, c = ring[ears[i, 0]], ring[ears[i, 1]], ring[ears[i, 2]]
+        cost += triangle_error(surface, image, room, a, b, c)
+    return cost
+
+
+@inner_kernel
+def remove(surface: Surface, image: UInt8Array, room: Room, v: int) -> int:
+    """Remove a vertex and fill the hole; the ring keeps its neighbours, whose number is given."""
+    ring, outer, star, ears, twin = room.ring, room.outer, room.star, room.ears, surface.twin
+    size, n_sides = collect_ring(surface, room, v)
+    count = fill_hole(surface.points, room, size)
+    surface.leaving[v] = -1
+    for i in range(count, n_sides):
+        free_triangle(surface, star[i])
+    # outer[i] becomes the half-edge across the side from place i of the ring to the next one left.
+    for i in range(count):
+        t, a, b, c = star[i], ears[i, 0], ears[i, 1], ears[i, 2]
+        set_triangle(surface, image, room, t, ring[a], ring[b], ring[c])
+        link(twin, 3 * t, outer[a])
+        link(twin, 3 * t + 1, outer[b])
+        link(twin, 3 * t + 2, outer[c] if i == count - 1 else -1)
+        outer[a] = 3 * t + 2
+    return size
+
+
+@inner_kernel
+def sift(heap: Int32Array, place: Int32Array, costs: Float64Array, size: int, at: int) -> None:
+    """Move the entry at a place of the heap up or down to where its cost belongs."""
+    v = heap[at]
+    while at > 0 and costs[v] < costs[heap[(at - 1) >> 1]]:
+        parent = (at - 1) >> 1
+        heap[at] = heap[parent]
+        place[heap[at]] = at
+        at = parent
+    while True:
+        child = 2 * at + 1
+        if child >= size:
+            break
+        if child + 1 < size and costs[heap[child + 1]] < costs[heap[child]]:
+            child += 1
+        if costs[heap[child]] >= costs[v]:
+            break
+        heap[at] = heap[child]
+        place[heap[at]] = at
+        at = child
+    heap[at] = v
+    place[v] = at
+
+
+@kernel
+def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cost: float) -> int:
+    """Remove the vertices that cost least, one by one; how many went.
+
+    A heap yields the cheapest one; when it has gone, the costs of its neighbours are computed anew.
+
+    Parameters
+    ----------
+    surface : Surface
+        With errors that are up to date.
+    image : ndarray
+        Shape (h, w, c), uint8.
+    room : Room
+    n_remove : int
+        Number to remove at most.
+    max_cost : float
+        Vertices that cost more than this squared error stay.
+    """
+    n_points = surface.points.shape[0]
+    costs = np.empty(n_points)
+    heap = np.empty(n_points, np.int32)
+    place = np.empty(n_points, np.int32)
+    neighbours = np.empty(MAX_RING, np.int32)
+    left = 0
+    for v in range(n_points):
+        if surface.leaving[v] >= 0:
+            costs[v] = removal_cost(surface, image, room, v)
+            heap[left] = v
+            place[v] = left
+            left += 1
+    for at in range(left // 2, -1, -1):
+        sift(heap, place, costs, left, at)
+    removed = 0
+    while removed < n_remove and left > 0:
+        v = heap[0]
+        if costs[v] == np.inf or costs[v] > max_cost:
+            break
+        size = remove(surface, image, room, v)
+        removed += 1
+        left -= 1
+        heap[0] = heap[left]
+        place[heap[0]] = 0
+        sift(heap, place, costs, left, 0)
+        for i in range(size):
+            neighbours[i] = room.ring[i]
+        for i in range(size):
+            u = neighbours[i]
+            costs[u] = removal_cost(surface, image, room, u)
+            sift(heap, place, costs, left, place[u])
+    return removed
+
+
+# --- Inserting ------------------------------------------------------------------------------------
+
+
+@inner_kernel
+def best_insertion(
+    surface: Surface, image: UInt8Array, room: Room, t: int
+) -> tuple[float, int, int]:
+    """What a new vertex in triangle t would gain, and where: its middle or towards a side."""
+    points, ring = surface.points, room.ring
+    for i in range(4):
+        ring[i] = surface.origin[3 * t + i % 3]
+    best, best_x, best_y = 0.0, 0, 0
+    for i in range(4):
+        x, y = 0, 0
+        for k in range(3):
+            # Weights in twentieths: 7, 6, 7 in the middle; 2 for the corner across from a side.
+            share = (7 if k != 1 else 6) if i == 3 else (2 if k == i else 9)
+            x += share * points[ring[k], 0]
+            y += share * points[ring[k], 1]
+        # The pixel's centre.
+        x, y = x // 40 * 2 + 1, y // 40 * 2 + 1
+        gain = surface.errors[t] - error_at(surface, image, room, x, y, 3)
+        if gain > best:
+            best, best_x, best_y = gain, x, y
+    return best, best_x, best_y
+
+
+@inner_kernel
+def split(
+    surface: Surface, image: UInt8Array, room: Room, t: int, v: int, second: int, third: int
+) -> None:
+    """Split triangle t at vertex v; `second` and `third` are triangles that are not in use."""
+    origin, twin = surface.origin, surface.twin
+    a, b, c = origin[3 * t], origin[3 * t + 1], origin[3 * t + 2]
+    far_b, far_c = twin[3 * t + 1], twin[3 * t + 2]
+    set_triangle(surface, image, room, t, a, b, v)
+    set_triangle(surface, image, room, second, b, c, v)
+    set_triangle(surface, image, room, third, c, a, v)
+    link(twin, 3 * second, far_b)
+    link(twin, 3 * third, far_c)
+    link(twin, 3 * t + 1, 3 * second + 2)
+    link(twin, 3 * second + 1, 3 * third + 2)
+    link(twin, 3 * third + 1, 3 * t + 2)
+
+
+@kernel
+def propose_insertions(
+    surface: Surface, image: UInt8Array, room: Room, gains: Float64Array, places: Int64Array
+) -> None:
+    """What a new vertex would gain in each triangle, shape (m,), and where, shape (m, 2)."""
+    for t in range(surface.errors.shape[0]):
+        gains[t] = 0.0
+        if surface.errors[t] > 0.0:
+            gains[t], places[t, 0], places[t, 1] = best_insertion(surface, image, room, t)
+
+
+@kernel
+def insert(
+    surface: Surface,
+    image: UInt8Array,
+    room: Room,
+    order: Int64Array,
+    places: Int64Array,
+    n_insert: int,
+) -> int:
+    """Insert vertices into triangles as long as there are any not in use; how many were inserted.
+
+    No two go into triangles that share a side: a second call sees what the first one changed.
+
+    Parameters
+    ----------
+    surface : Surface
+    image : ndarray
+        Shape (h, w, c), uint8.
+    room : Room
+    order : ndarray
+        Shape (k,), int64: triangles in use, the best first.
+    places : ndarray
+        Shape (m, 2), int64: where in each triangle.
+    n_insert : int
+        Number to insert at most.
+    """
+    n_points, n_triangles = surface.points.shape[0], surface.errors.shape[0]
+    changed = np.zeros(n_triangles, np.bool_)
+    inserted, v = 0, 0
+    free_triangles = np.zeros(2, np.int64)
+    free = 0
+    for i in range(order.shape[0]):
+        t = order[i]
+        if changed[t]:
+            continue
+        while v < n_points and surface.leaving[v] >= 0:
+            v += 1
+        for k in range(2):
+            while free < n_triangles and surface.origin[3 * free] >= 0:
+                free += 1
+            free_triangles[k] = free
+            free += 1
+        if inserted == n_insert or v >= n_points or free > n_triangles:
+            break
+        for e in range(3 * t, 3 * t + 3):
+            if surface.twin[e] >= 0:
+                changed[surface.twin[e] // 3] = True
+        for k in range(4):
+            room.ring[k] = surface.origin[3 * t + k % 3]
+        surface.points[v, 0], surface.points[v, 1] = places[t, 0], places[t, 1]
+        error_at(surface, image, room, places[t, 0], places[t, 1], 3)
+        for z in range(surface.colors.shape[1]):
+            surface.colors[v, z] = surface.colors[room.ring[0], z]
+        take_color(surface, room, v)
+        split(surface, image, room, t, v, free_triangles[0], free_triangles[1])
+        inserted += 1
+    return inserted
+
+
+# --- Moving and flipping --------------------------------------------------------------------------
+
+
+@kernel
+def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
+    """Move each restless vertex to the best of its neighbouring pixels; how many moved.
+
+    Eight places at two pixels' distance are tried, then eight at one pixel's. The error of each is
+    that of the star in the best colour for it. Vertices on the border stay on their side, corners
+    where they are.
+    """
+    points, leaving, restless = surface.points, surface.leaving, surface.restless
+    right, bottom = 2 * image.shape[1], 2 * image.shape[0]
+    moved = 0
+    for v in range(points.shape[0]):
+        if leaving[v] < 0 or not restless[v]:
+            continue
+        restless[v] = False
+        x, y = points[v, 0], points[v, 1]
+        on_side, on_level = x in (0, right), y in (0, bottom)
+        if on_side and on_level:
+            continue
+        size, n_sides = collect_ring(surface, room, v)
+        if size < 3:
+            continue
+        least = error_at(surface, image, room, x, y, n_sides)
+        take_color(surface, room, v)
+        for step in (4, 2):
+            here_x, here_y = x, y
+            for i in range(9):
+                near_x, near_y = here_x + step * (i % 3 - 1), here_y + step * (i // 3 - 1)
+                if i == 4 or (on_side and near_x != x) or (on_level and near_y != y):
+                    continue
+                if not on_side and not 0 < near_x < right:
+                    continue
+                if not on_level and not 0 < near_y < bottom:
+                    continue
+                error = error_at(surface, image, room, near_x, near_y, n_sides)
+                if error < least - _LEAST_GAIN:
+                    least, x, y = error, near_x, near_y
+                    take_color(surface, room, v)
+        if x != points[v, 0] or y != points[v, 1]:
+            moved += 1
+            points[v, 0], points[v, 1] = x, y
+            restless[v] = True
+            for i in range(size):
+                restless[room.ring[i]] = True
+        for i in range(n_sides):
+            surface.errors[room.star[i]] = triangle_error(
+                surface, image, room, v, room.ring[i], room.ring[i + 1]
+            )
+    return moved
+
+
+@kernel
+def flip_edges(surface: Surface, image: UInt8Array, room: Room, charge: float) -> int:
+    """Flip each edge once if that lowers the error; how many were flipped.
+
+    An edge that is not Delaunay is charged with what it costs to code it.
+    """
+    points, origin, twin, errors = surface.points, surface.origin, surface.twin, surface.errors
+    flipped = 0
+    for e in range(origin.shape[0]):
+        f = twin[e]
+        if f < e:
+            continue
+        #  e runs from b to c in the triangle b, c, a; f back from c to b in c, b, d.
+        b, c, a, d = origin[e], origin[f], origin[before(e)], origin[before(f)]
+        if cross(points, a, d, c) <= 0 or cross(points, d, a, b) <= 0:
+            continue
+        first = triangle_error(surface, image, room, a, d, c)
+        gain = errors[e // 3] + errors[f // 3] - first
+        gain += -charge if not inside_circle(points, b, c, a, d) else charge
+        if gain <= _LEAST_GAIN:
+            continue
+        gain -= triangle_error(surface, image, room, d, a, b)
+        if gain <= _LEAST_GAIN:
+            continue
+        far_ca, far_ab = twin[after(e)], twin[before(e)]
+        far_bd, far_dc = twin[after(f)], twin[before(f)]
+        t, u = e // 3, f // 3
+        set_triangle(surface, image, room, t, a, d, c)
+        set_triangle(surface, image, room, u, d, a, b)
+        link(twin, 3 * t, 3 * u)
+        link(twin, 3 * t + 1, far_dc)
+        link(twin, 3 * t + 2, far_ca)
+        link(twin, 3 * u + 1, far_ab)
+        link(twin, 3 * u + 2, far_bd)
+        flipped += 1
+    return flipped
