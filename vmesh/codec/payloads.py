@@ -254,7 +254,7 @@ class Decoder:
 def _code_positions(
     coder: Int64Array, data: UInt8Array, points: Int32Array, columns: int, rows: int
 ) -> int:
-    odds = entropy.fresh_odds(entropy.SPLIT_CONTEXTS)
+    odds = entropy.split_odds()
     entropy.code_positions(coder, data, odds, points, columns, rows)
     return entropy.OK
 
@@ -262,7 +262,7 @@ def _code_positions(
 def _code_triangles(
     coder: Int64Array, data: UInt8Array, triangles: Int32Array, n_vertices: int
 ) -> int:
-    odds = entropy.fresh_odds(3 * entropy.NUMBER_CONTEXTS)
+    odds = entropy.even_odds(3 * entropy.NUMBER_CONTEXTS)
     return entropy.code_triangles(coder, data, odds, triangles, n_vertices)
 
 
@@ -273,7 +273,7 @@ def _code_levels(
     hierarchy: Hierarchy,
     lattice: ColorLattice,
 ) -> int:
-    odds = entropy.fresh_odds(lattice.n_components * entropy.COMPONENT_CONTEXTS)
+    odds = entropy.level_odds(lattice.n_components)
     return entropy.code_levels(coder, data, odds, *hierarchy, levels, *lattice.level_bounds())
 
 
@@ -285,7 +285,7 @@ def _code_flips(
     levels: Int32Array,
     flips: Flips,
 ) -> int:
-    odds = entropy.fresh_odds(entropy.FLIP_CONTEXTS)
+    odds = entropy.flip_odds()
     points = vertices.astype(np.int64)
     twins = find_twins(triangles, len(vertices))
     luma = np.ascontiguousarray(levels[:, 0])

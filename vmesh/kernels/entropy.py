@@ -20,6 +20,8 @@ G. N. N. Martin, "Range encoding", 1979; the byte-wise carry is that of I. Pavlo
 
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
@@ -34,7 +36,7 @@ CACHE = 4  # writing: the byte that a carry may still raise
 PENDING = 5  # writing: bytes 0xFF after it that a carry would turn to 0
 N_FIELDS = 6
 
-RATE_LIMIT = 62
+RATE_LIMIT = 250
 TOP = 1 << 24
 MASK = 0xFFFFFFFF
 
@@ -54,10 +56,9 @@ SPLIT_CONTEXTS = N_AREA_CLASSES * N_SMALL * N_SMALL + N_LARGE * N_LARGE
 # more for the vertex without parents.
 SPREADS = (11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016)
 N_SPREADS = 14
-N_PEERS = 4
 N_UNARY = 14
 SIZE_CONTEXTS = N_UNARY + 2
-COMPONENT_CONTEXTS = N_SPREADS * N_PEERS * SIZE_CONTEXTS + 3
+COMPONENT_CONTEXTS = N_SPREADS * SIZE_CONTEXTS + 3
 
 # Classes of the sum of the cotangents of the angles across an edge, in sixteenths.
 ANGLES = (3, 7, 12, 18, 26, 38, 60)
@@ -65,6 +66,35 @@ N_ANGLES = 8
 N_SLOPES = 5
 FLIP_CONTEXTS = 2 * N_ANGLES * N_SLOPES
 MAX_FLIPS = 1  # for each half-edge
+
+# Odds at the start, in 1/32, as they were found on average in meshes of ten photographs, and how
+# many bits they count as. Whether the size of a difference is more than 0, than 1, than each number
+# from 2 on, for each spread; for the first component and for the others.
+LEVEL_PRIORS = (
+    (
+        (20, 25, 23, 26, 27, 27, 28, 29, 30, 31, 31, 31, 31, 31),
+        (19, 25, 19, 18, 21, 22, 24, 26, 29, 30, 30, 31, 31, 31),
+        (18, 25, 20, 22, 20, 18, 19, 21, 24, 26, 28, 30, 31, 25),
+    ),
+    (
+        (2, 1, 5, 12, 15, 19, 23, 26, 28, 29, 28, 25, 19, 5),
+        (8, 5, 4, 3, 6, 11, 17, 23, 25, 28, 27, 22, 17, 10),
+        (15, 10, 15, 13, 14, 13, 16, 18, 22, 24, 27, 27, 27, 6),
+    ),
+)
+# Whether an edge is flipped, when it is looked at again and for the first time; for each class of
+# angles and in it for each slope.
+# fmt: off
+FLIP_PRIORS = (
+    2, 3, 3, 4, 6, 9, 10, 10, 13, 17, 9, 10, 9, 12, 16, 8, 8, 8, 10, 15,
+    7, 7, 8, 9, 13, 6, 6, 6, 6, 11, 5, 4, 5, 5, 8, 3, 2, 2, 3, 5,
+    6, 8, 9, 9, 12, 10, 11, 11, 13, 16, 7, 8, 9, 10, 14, 5, 7, 6, 7, 10,
+    4, 5, 6, 6, 8, 3, 4, 4, 4, 6, 2, 2, 2, 2, 4, 2, 1, 2, 2, 3,
+)
+# fmt: on
+LEVELS_SEEN = 16
+FLIPS_SEEN = 16
+SPLIT_SEEN = 16
 
 
 @kernel
@@ -342,8 +372,7 @@ def code_levels(
     """Code colour levels, each as its difference from the mean of its parents.
 
     All parents count alike for the first component; for the others those count more that are
-    closer in the first. The context of a difference is made of how far the parents' levels are
-    spread and of the vertex's differences in the components before.
+    closer in the first. The context of a difference is how far the parents' levels are spread.
 
     Parameters
     ----------
@@ -363,7 +392,6 @@ def code_levels(
     """
     for i in range(order.shape[0]):
         v = order[i]
-        peer = 0
         for z in range(levels.shape[1]):
             total, weights, squares = np.int64(0), np.int64(0), np.int64(0)
             for j in range(starts[i], starts[i + 1]):
@@ -386,20 +414,19 @@ def code_levels(
                 rest = 20 * (total - prediction * weights)
                 lean = 1 if rest > 3 * weights else (2 if rest < -3 * weights else 0)
             base = z * COMPONENT_CONTEXTS
-            context = base + (spread * N_PEERS + peer) * SIZE_CONTEXTS
+            context = base + spread * SIZE_CONTEXTS
             error = levels[v, z] - prediction
             size = code_size(coder, data, odds, context, abs(error))
             if size < 0:
                 return BAD_NUMBER
             negative = 0
             if size > 0:
-                sign_context = base + N_SPREADS * N_PEERS * SIZE_CONTEXTS + lean
+                sign_context = base + N_SPREADS * SIZE_CONTEXTS + lean
                 negative = code_bit(coder, data, odds, sign_context, 1 if error < 0 else 0)
             level = prediction - size if negative == 1 else prediction + size
             if level < lowest[z] or level > highest[z]:
                 return BAD_NUMBER
             levels[v, z] = level
-            peer = min(peer + bit_length(size), N_PEERS - 1)
     return OK
 
 
@@ -562,17 +589,59 @@ def code_flips(
     return OK
 
 
-@kernel
-def bit_length(number: int | np.int64) -> int:
-    """Number of bits of a number of 0 or more."""
-    length = 0
-    while number >> length > 0:
-        length += 1
-    return length
-
-
-def fresh_odds(n_contexts: int) -> Int64Array:
+def even_odds(n_contexts: int) -> Int64Array:
     """Even odds for a number of contexts, shape (n, 2), int64."""
     odds = np.zeros((n_contexts, 2), dtype=np.int64)
     odds[:, 0] = 1 << 15
+    return odds
+
+
+def split_odds() -> Int64Array:
+    """Odds of the numbers of points at the start, shape (SPLIT_CONTEXTS, 2), int64.
+
+    Each of a few points lies in either half alike; but in a box of two or four sites it lies in
+    the last one, where the centres of pixels are on a lattice of half pixels.
+    """
+    odds = even_odds(SPLIT_CONTEXTS)
+    for count in range(1, N_SMALL):
+        for middle, (low, high) in enumerate(_search_steps(count)):
+            above = sum(comb(count, left) for left in range(middle + 1, high + 1))
+            share = 65536 * above // sum(comb(count, left) for left in range(low, high + 1))
+            for area in range(N_AREA_CLASSES):
+                context = (area * N_SMALL + count) * N_SMALL + middle
+                odds[context, 0] = 2048 if area < 2 else share
+                odds[context, 1] = SPLIT_SEEN
+    return odds
+
+
+def _search_steps(count: int) -> list[tuple[int, int]]:
+    """The bounds between which a binary search of 0 to `count` asks for each middle."""
+    steps = [(0, 0)] * count
+    pending = [(0, count)]
+    while pending:
+        low, high = pending.pop()
+        if low < high:
+            middle = (low + high) >> 1
+            steps[middle] = (low, high)
+            pending += [(low, middle), (middle + 1, high)]
+    return steps
+
+
+def level_odds(n_components: int) -> Int64Array:
+    """Odds of the levels at the start, shape (c * COMPONENT_CONTEXTS, 2), int64."""
+    odds = even_odds(n_components * COMPONENT_CONTEXTS)
+    for z in range(n_components):
+        for spread in range(N_SPREADS):
+            first = z * COMPONENT_CONTEXTS + spread * SIZE_CONTEXTS
+            for i in range(N_UNARY):
+                odds[first + i, 0] = LEVEL_PRIORS[min(z, 1)][min(i, 2)][spread] << 11
+                odds[first + i, 1] = LEVELS_SEEN
+    return odds
+
+
+def flip_odds() -> Int64Array:
+    """Odds of a flip at the start, shape (FLIP_CONTEXTS, 2), int64."""
+    odds = even_odds(FLIP_CONTEXTS)
+    odds[:, 0] = np.array(FLIP_PRIORS) << 11
+    odds[:, 1] = FLIPS_SEEN
     return odds
