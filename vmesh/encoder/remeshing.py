@@ -178,6 +178,7 @@ class Remesher:
         self._surface = _open_surface(
             surface.points[used], surface.colors[used], rank[triangles], n_spare
         )
+        self._surface.restless[: len(used)] = surface.restless[used]
         measure(self._surface, self._picture, self._room)
 
 

@@ -231,31 +231,40 @@ def add_moments(
     det = ax * by - ay * bx
     first, last = spans(x, y, x + ax, y + ay, x + bx, y + by, image.shape[1], rows)
     inverse = 1.0 / float(det)
-    step_a, step_b = 2.0 * by * inverse, -2.0 * ay * inverse
-    for row in range(first, last):
-        start = rows[row, 0]
-        dx, dy = 2 * start + 1 - x, 2 * row + 1 - y
-        weight_a = (dx * by - dy * bx) * inverse
-        weight_b = (dy * ax - dx * ay) * inverse
-        for column in range(start, rows[row, 1]):
-            weight = 1.0 - weight_a - weight_b
-            sums[1] += weight * weight
-            for z in range(image.shape[2]):
-                rest = image[row, column, z] - weight_a * colors[a, z] - weight_b * colors[b, z]
-                sums[0] += rest * rest
-                sums[2 + z] += weight * rest
-            weight_a += step_a
-            weight_b += step_b
+    # The weight of the vertex, and what a and b contribute, change by these with a half pixel.
+    fall_right, fall_down = (ay - by) * inverse, (bx - ax) * inverse
+    for z in range(image.shape[2]):
+        ca, cb = colors[a, z], colors[b, z]
+        right = (ca * by - cb * ay) * inverse
+        down = (cb * ax - ca * bx) * inverse
+        squares, products, weights = 0.0, 0.0, 0.0
+        for row in range(first, last):
+            start = rows[row, 0]
+            dx, dy = 2 * start + 1 - x, 2 * row + 1 - y
+            weight = 1.0 + fall_right * dx + fall_down * dy
+            value = right * dx + down * dy
+            for column in range(start, rows[row, 1]):
+                rest = image[row, column, z] - value
+                squares += rest * rest
+                products += weight * rest
+                weights += weight * weight
+                value += 2.0 * right
+                weight += 2.0 * fall_right
+        sums[0] += squares
+        sums[2 + z] += products
+        if z == 0:
+            sums[1] += weights
 
 
 @inner_kernel
 def error_at(
-    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, n_sides: int
+    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, n_sides: int, limit: float
 ) -> float:
     """Squared error of a star with its centre at (x, y), in the best colour for it.
 
     The star's rim is ``room.ring``, of which the first `n_sides` sides count; infinite if one of
-    its triangles were not positive. ``room.sums`` holds what the colour follows from.
+    its triangles were not positive, or as soon as the error is more than `limit`. ``room.sums``
+    holds what the colour follows from.
     """
     points, ring, sums = surface.points, room.ring, room.sums
     for i in range(n_sides):
@@ -263,12 +272,17 @@ def error_at(
         ax, ay = points[a, 0] - x, points[a, 1] - y
         if ax * (points[b, 1] - y) - ay * (points[b, 0] - x) <= 0:
             return np.inf
-    sums[:] = 0.0
+    for i in range(sums.shape[0]):
+        sums[i] = 0.0
+    error = 0.0
     for i in range(n_sides):
         add_moments(surface, image, room, x, y, ring[i], ring[i + 1])
-    error: float = sums[0]
-    for z in range(image.shape[2]):
-        error -= sums[2 + z] * sums[2 + z] / (sums[1] + _RIDGE)
+        # The least error of some triangles is no more than that of all.
+        error = sums[0]
+        for z in range(image.shape[2]):
+            error -= sums[2 + z] * sums[2 + z] / (sums[1] + _RIDGE)
+        if error > limit:
+            return np.inf
     return error
 
 
@@ -470,7 +484,8 @@ def sift(heap: Int32Array, place: Int32Array, costs: Float64Array, size: int, at
 def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cost: float) -> int:
     """Remove the vertices that cost least, one by one; how many went.
 
-    A heap yields the cheapest one; when it has gone, the costs of its neighbours are computed anew.
+    A heap yields the cheapest one. The costs of its neighbours are out of date when it has gone;
+    since they hardly ever fall, they are computed anew when they come up as the cheapest.
 
     Parameters
     ----------
@@ -488,7 +503,7 @@ def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cos
     costs = np.empty(n_points)
     heap = np.empty(n_points, np.int32)
     place = np.empty(n_points, np.int32)
-    neighbours = np.empty(MAX_RING, np.int32)
+    outdated = np.zeros(n_points, np.bool_)
     left = 0
     for v in range(n_points):
         if surface.leaving[v] >= 0:
@@ -503,18 +518,17 @@ def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cos
         v = heap[0]
         if costs[v] == np.inf or costs[v] > max_cost:
             break
-        size = remove(surface, image, room, v)
-        removed += 1
-        left -= 1
-        heap[0] = heap[left]
-        place[heap[0]] = 0
+        if outdated[v]:
+            outdated[v] = False
+            costs[v] = removal_cost(surface, image, room, v)
+        else:
+            for i in range(remove(surface, image, room, v)):
+                outdated[room.ring[i]] = True
+            removed += 1
+            left -= 1
+            heap[0] = heap[left]
+            place[heap[0]] = 0
         sift(heap, place, costs, left, 0)
-        for i in range(size):
-            neighbours[i] = room.ring[i]
-        for i in range(size):
-            u = neighbours[i]
-            costs[u] = removal_cost(surface, image, room, u)
-            sift(heap, place, costs, left, place[u])
     return removed
 
 
@@ -539,7 +553,7 @@ def best_insertion(
             y += share * points[ring[k], 1]
         # The pixel's centre.
         x, y = x // 40 * 2 + 1, y // 40 * 2 + 1
-        gain = surface.errors[t] - error_at(surface, image, room, x, y, 3)
+        gain = surface.errors[t] - error_at(surface, image, room, x, y, 3, surface.errors[t] - best)
         if gain > best:
             best, best_x, best_y = gain, x, y
     return best, best_x, best_y
@@ -624,7 +638,7 @@ def insert(
         for k in range(4):
             room.ring[k] = surface.origin[3 * t + k % 3]
         surface.points[v, 0], surface.points[v, 1] = places[t, 0], places[t, 1]
-        error_at(surface, image, room, places[t, 0], places[t, 1], 3)
+        error_at(surface, image, room, places[t, 0], places[t, 1], 3, np.inf)
         for z in range(surface.colors.shape[1]):
             surface.colors[v, z] = surface.colors[room.ring[0], z]
         take_color(surface, room, v)
@@ -658,7 +672,7 @@ def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
         size, n_sides = collect_ring(surface, room, v)
         if size < 3:
             continue
-        least = error_at(surface, image, room, x, y, n_sides)
+        least = error_at(surface, image, room, x, y, n_sides, np.inf)
         take_color(surface, room, v)
         for step in (4, 2):
             here_x, here_y = x, y
@@ -670,7 +684,7 @@ def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
                     continue
                 if not on_level and not 0 < near_y < bottom:
                     continue
-                error = error_at(surface, image, room, near_x, near_y, n_sides)
+                error = error_at(surface, image, room, near_x, near_y, n_sides, least)
                 if error < least - _LEAST_GAIN:
                     least, x, y = error, near_x, near_y
                     take_color(surface, room, v)
