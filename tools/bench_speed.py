@@ -90,7 +90,7 @@ def main(folder: Path, markdown: bool) -> None:
     """Measure decoders and the command line on the first photograph of a folder."""
     photograph = load_photographs(folder)[0]
     printer = Printer(markdown)
-    mesh = vmesh.encode(photograph.pixels, vertices=VERTICES)
+    mesh = vmesh.encode(photograph.pixels, method="blue-noise", vertices=VERTICES)
     report_raster(printer, photograph, mesh)
     report_stages(printer, photograph, mesh)
     with tempfile.TemporaryDirectory() as name:
@@ -113,7 +113,8 @@ def report_raster(printer: Printer, photograph: Photograph, mesh: Mesh) -> None:
             f"{ENLARGEMENT} times."
         )
         return
-    large = vmesh.encode(resize(photograph.pixels, size), vertices=MANY_VERTICES)
+    enlarged = resize(photograph.pixels, size)
+    large = vmesh.encode(enlarged, method="blue-noise", vertices=MANY_VERTICES)
     name = f"{photograph.name} enlarged {ENLARGEMENT} times"
     report_drawing(printer, name, large, MANY_RUNS)
 
@@ -261,7 +262,10 @@ def report_stages(printer: Printer, photograph: Photograph, mesh: Mesh) -> None:
     """Print how long the library takes for each thing that it does with a photograph."""
     data = vmesh.dumps(mesh)
     actions: dict[str, Callable[[], object]] = {
-        "encode": lambda: vmesh.encode(photograph.pixels, vertices=VERTICES),
+        "encode, blue-noise": lambda: vmesh.encode(
+            photograph.pixels, method="blue-noise", vertices=VERTICES
+        ),
+        "encode, adaptive": lambda: vmesh.encode(photograph.pixels, vertices=VERTICES),
         "dumps": lambda: vmesh.dumps(mesh),
         "loads": lambda: vmesh.loads(data),
         "render": lambda: vmesh.render(mesh),

@@ -75,8 +75,9 @@ def draw(array: UInt8Array, settings: Settings, show: str, limits: Limits) -> UI
     def points() -> UInt8Array:
         vertices = mesh.vertices
         x, y = np.minimum(vertices // 2, [width - 1, height - 1]).T
-        # Saturated class colours: what a sample's plane was, as in the paper's figures.
-        classes = samples.classes[y, x]
+        # Saturated class colours: what a sample's plane was, as in the paper's figures. Points that
+        # have moved since have none.
+        classes = samples.classes[y, x] * (settings.method == "blue-noise")
         planes = np.stack([classes >> i & 1 for i in range(3)], axis=1)
         colors = (planes * 220).astype(np.uint8)
         return figure.draw_points(vertices, mesh.unit, width, height, colors)

@@ -104,5 +104,7 @@ class Finisher:
         if step is None:
             step = round(_STEP * sqrt(draft.error / self.image.size))
         lattice = ColorLattice.uniform(n_components, min(max(step, 1), MAX_STEP))
-        levels = quantize(equations, colors, vertices, lattice, price_of(draft))
+        # Who asks for no rounding wants the fitted colours as they are.
+        price = 0.0 if self.color_step == 1 else price_of(draft)
+        levels = quantize(equations, colors, vertices, lattice, price)
         return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, self.metadata)
