@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import platform
+import subprocess
+import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -22,6 +24,13 @@ _SUFFIXES: Final = (".png", ".jpg", ".jpeg")
 _SHIPPED: Final = Path(__file__).resolve().parent.parent / "tests" / "images"
 _PACKAGES: Final = ("numpy", "numba", "scipy")
 _LINE: Final = 100
+# In a small process of its own: the peak that a process is charged with starts at its parent's.
+_MEASURE_CHILD: Final = """
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+print(peak if sys.platform == "darwin" else 1024 * peak)
+"""
 
 images_option = click.option(
     "--images",
@@ -134,6 +143,14 @@ def time_actions(actions: Mapping[str, Callable[[], object]], runs: int) -> dict
             action()
             seconds[name].append(time.perf_counter() - started)
     return {name: Timing(median(own), min(own), max(own)) for name, own in seconds.items()}
+
+
+def measure_process(*command: str) -> tuple[str, int]:
+    """What a process prints, and the most memory that it held, in bytes."""
+    measuring = (sys.executable, "-c", _MEASURE_CHILD, *command)
+    printed = subprocess.run(measuring, check=True, stdout=subprocess.PIPE, text=True).stdout
+    own, _, peak = printed.rstrip().rpartition("\n")
+    return own, int(peak)
 
 
 def judge(found: float, most: float) -> str:

@@ -15,7 +15,7 @@ from vmesh.encoder.colors import fit_colors, sample_colors
 from vmesh.encoder.drafts import SUBDIVISION, Draft, Finisher, SampledDraft, price_of
 from vmesh.encoder.image import as_image, visible_planes, with_hidden_colors_replaced
 from vmesh.encoder.rate_control import guess_vertices, meet_psnr, meet_size, price_of_quality
-from vmesh.encoder.remeshing import Remesher
+from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
@@ -27,17 +27,15 @@ Progress = Callable[[str], None]
 
 STAGES: Final = ("sampling", "thinning", "refinement", "colors", "rate control")
 
-# For each effort from 2 on: vertices per pixel that thinning starts from, and the shares of the
-# vertices that are exchanged in the rounds of refinement.
 _EFFORTS: Final = {
-    2: (0.04, (0.0,)),
-    3: (0.05, (0.0, 0.15)),
-    4: (0.06, (0.0, 0.2, 0.1)),
-    5: (0.06, (0.0, 0.2, 0.15, 0.1)),
-    6: (0.10, (0.0, 0.2, 0.2, 0.15, 0.1, 0.1, 0.05)),
-    7: (0.15, (0.0, 0.2, 0.2, 0.15, 0.15, 0.1, 0.1, 0.1, 0.05, 0.05, 0.0)),
-    8: (0.25, (0.0, *(0.2,) * 4, *(0.15,) * 4, *(0.1,) * 5, *(0.05,) * 3, 0.0)),
-    9: (0.25, (0.0, *(0.2,) * 8, *(0.15,) * 8, *(0.1,) * 8, *(0.05,) * 6, 0.0, 0.0)),
+    2: Effort(density=0.04, max_rounds=1, least_gain=0.0, share_decay=1.0),
+    3: Effort(density=0.05, max_rounds=2, least_gain=0.0, share_decay=0.7),
+    4: Effort(density=0.06, max_rounds=3, least_gain=0.0, share_decay=0.8),
+    5: Effort(density=0.06, max_rounds=16, least_gain=0.06, share_decay=0.85),
+    6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
+    7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
+    8: Effort(density=0.25, max_rounds=30, least_gain=0.006, share_decay=0.94),
+    9: Effort(density=0.25, max_rounds=32, least_gain=0.002, share_decay=0.95),
 }
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3
@@ -47,7 +45,9 @@ _VERTEX_BITS: Final = 20.0
 # The error before refinement, for that after it.
 _REFINEMENT_GAIN: Final = 1.6
 
-_THINNING_STEPS: Final = 4  # about so many, for the display of progress
+# About so many steps, for the display of progress.
+_THINNING_STEPS: Final = 4
+_REFINEMENT_STEPS: Final = {2: 2, 3: 3, 4: 4, 5: 5, 6: 7, 7: 10, 8: 16, 9: 28}
 
 _BLUE_NOISE_STEP: Final = 8
 
@@ -102,8 +102,7 @@ def count_steps(settings: Settings) -> int:
     """About how often an encoding with these settings reports progress."""
     if settings.method == "blue-noise" or settings.effort == 1:
         return 3
-    _, shares = _EFFORTS[settings.effort]
-    return 3 + _THINNING_STEPS + len(shares)
+    return 3 + _THINNING_STEPS + _REFINEMENT_STEPS[settings.effort]
 
 
 def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples]:
@@ -175,26 +174,37 @@ def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
 def _remesh(image: UInt8Array, settings: Settings, report: Progress) -> Draft:
     """The vertices of a dense sample that matter most, moved to better places."""
     height, width = image.shape[:2]
-    density, shares = _EFFORTS[settings.effort]
+    effort = _EFFORTS[settings.effort]
     wanted = _wanted_vertices(settings, width, height)
-    start = round(max(density * width * height, _LEAST_CHOICE * (wanted or 0)))
-    start = max(4, min(start, width * height))
-    _, samples = propose(image, _with_vertices(settings, start))
-    draft = Remesher(image, samples.vertices())
-
-    def thinning() -> None:
-        report("thinning")
-
+    start = max(4, round(effort.density * width * height))
     if wanted is not None:
-        draft.thin(wanted, thinning)
+        start = max(start, _LEAST_CHOICE * wanted)
+    while True:
+        start = min(start, width * height)
+        _, samples = propose(image, _with_vertices(settings, start))
+        draft = Remesher(image, samples.vertices(), effort)
+        n_start = draft.n_vertices
+        _thin(draft, settings, wanted, lambda: report("thinning"))
+        if _LEAST_CHOICE * draft.n_vertices <= n_start or start == width * height:
+            break
+        # There was too little to choose from.
+        start = 2 * _LEAST_CHOICE * draft.n_vertices
+    draft.refine(draft.n_vertices, lambda: report("refinement"))
+    return draft
+
+
+def _thin(
+    draft: Remesher, settings: Settings, wanted: int | None, report: Callable[[], None]
+) -> None:
+    """Remove vertices down to the number wanted, or as many as the price or the error allows."""
+    if wanted is not None:
+        draft.thin(wanted, report)
     elif settings.target_psnr is not None:
-        allowed = image.size * 255.0**2 / 10.0 ** (settings.target_psnr / 10.0)
-        draft.thin(4, thinning, max_error=_REFINEMENT_GAIN * allowed)
+        allowed = draft.n_samples * 255.0**2 / 10.0 ** (settings.target_psnr / 10.0)
+        draft.thin(4, report, max_error=_REFINEMENT_GAIN * allowed)
     else:
         price = price_of_quality(_quality(settings))
-        draft.thin(4, thinning, max_cost=_VERTEX_BITS * price)
-    draft.refine(draft.n_vertices, shares, lambda: report("refinement"))
-    return draft
+        draft.thin(4, report, max_cost=_VERTEX_BITS * price)
 
 
 def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:

@@ -8,7 +8,7 @@ vertices is the one thing to search for.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import log10
+from math import log2, log10
 from typing import Final
 
 import numpy as np
@@ -28,11 +28,13 @@ _PRICE_FACTOR: Final = 15.0
 _FRAME_BYTES: Final = 28
 _VERTEX_BITS: Final = 18.0
 
-_MAX_ATTEMPTS: Final = 12
+_MAX_ATTEMPTS: Final = 20
 _SIZE_TOLERANCE: Final = 0.02
 _PSNR_TOLERANCE: Final = 0.1
-# Decibels that twice as many vertices gain.
+# Decibels that twice as many vertices gain: expected, and the least and the most believed.
 _GAIN: Final = 2.4
+_LEAST_GAIN: Final = 1.5
+_MOST_GAIN: Final = 8.0
 
 
 def price_of_quality(quality: int) -> float:
@@ -90,23 +92,24 @@ def meet_psnr(
     """
     best: Mesh | None = None
     best_psnr = np.inf
-    low, high = 0, finisher.image.shape[0] * finisher.image.shape[1] + 1
+    gain = _GAIN
+    earlier: tuple[float, float] | None = None
     for _ in range(_MAX_ATTEMPTS):
         mesh = finisher.finish(draft)
         psnr = measure_psnr(finisher.image, mesh)
-        before = draft.n_vertices
-        if psnr >= target_psnr:
-            high = before
-            if psnr < best_psnr:
-                best, best_psnr = mesh, psnr
-        else:
-            low = before
+        if target_psnr <= psnr < best_psnr:
+            best, best_psnr = mesh, psnr
         if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:
             break
+        before = draft.n_vertices
+        if earlier is not None and log2(before) != earlier[0]:
+            slope = (psnr - earlier[1]) / (log2(before) - earlier[0])
+            gain = min(max(slope, _LEAST_GAIN), _MOST_GAIN)
+        earlier = log2(before), psnr
         aim = target_psnr + 0.5 * _PSNR_TOLERANCE
-        wanted = round(before * 2.0 ** ((aim - min(psnr, target_psnr + 12.0)) / _GAIN))
-        if not low < wanted < high:
-            wanted = (low + high + 1) // 2
+        doublings = (aim - psnr) / gain
+        wanted = round(before * 2.0 ** min(max(doublings, -2.0), 2.0))
+        wanted = min(wanted, before - 1) if psnr > target_psnr else max(wanted, before + 1)
         draft.resize(max(4, wanted))
         report()
         if draft.n_vertices == before:

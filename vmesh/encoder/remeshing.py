@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -28,10 +29,35 @@ _UNIT: Final = 2  # lattice units in a pixel
 # Colours are fitted anew whenever this share of the vertices is left.
 _REFIT_SHARE: Final = 0.6
 _FINE_SHARE: Final = 0.85  # where the error is what stops the thinning
-_RESIZE_SHARE: Final = 0.02
+# Shares of the vertices that are exchanged in a round: the first, and the least.
+_FIRST_SHARE: Final = 0.2
+_LEAST_SHARE: Final = 0.03
+_PATIENCE: Final = 3  # rounds that are judged together
 # Bits that an edge costs which is not Delaunay.
 _FLIP_BITS: Final = 3.5
 _INSERTION_PASSES: Final = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How long a mesh is worked on.
+
+    Parameters
+    ----------
+    density : float
+        Vertices per pixel that thinning starts from.
+    max_rounds : int
+        Most rounds of refinement.
+    least_gain : float
+        Share of the error that a round of refinement has to save for another one to follow.
+    share_decay : float
+        What the share of the vertices that are exchanged falls by from round to round.
+    """
+
+    density: float
+    max_rounds: int
+    least_gain: float
+    share_decay: float
 
 
 class Remesher:
@@ -43,9 +69,14 @@ class Remesher:
         Shape (h, w, c), uint8.
     vertices : ndarray
         Shape (n, 2), int32, in half pixels, in raster order, the corners of the picture among them.
+    effort : Effort
+        How long the mesh is refined.
     """
 
-    def __init__(self, image: UInt8Array, vertices: Int32Array) -> None:
+    def __init__(self, image: UInt8Array, vertices: Int32Array, effort: Effort) -> None:
+        self._effort = effort
+        # A round takes little time on a small picture, so it may gain little.
+        self._least_gain = effort.least_gain * min(1.0, image.shape[0] * image.shape[1] / 2**18)
         # Colours count as much as they can be seen: all components, alpha among them, alike.
         self._picture = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
         self._weights = np.ones(image.shape[:2])
@@ -55,6 +86,11 @@ class Remesher:
         self.n_vertices = len(vertices)
         self.error = 0.0
         self._refit()
+
+    @property
+    def n_samples(self) -> int:
+        """Number of samples that the error is summed over."""
+        return self._picture.size
 
     def thin(
         self,
@@ -87,27 +123,39 @@ class Remesher:
                 break
         self._compact(0)
 
-    def refine(self, n_vertices: int, shares: Sequence[float], report: Callable[[], None]) -> None:
-        """Let the mesh settle, and exchange shares of its vertices one after the other.
+    def refine(self, n_vertices: int, report: Callable[[], None]) -> None:
+        """Let the mesh settle, then exchange vertices round by round while that gains enough.
 
         Parameters
         ----------
         n_vertices : int
             Number of vertices to end with.
-        shares : sequence of float
-            Share of the vertices to exchange before each round.
         report : callable
             Called after each round.
         """
-        for share in shares:
+        share = _FIRST_SHARE
+        if n_vertices == self.n_vertices:
+            self._settle()
+            report()
+        else:
+            change = abs(n_vertices - self.n_vertices) / self.n_vertices
+            share = min(max(2 * change, _LEAST_SHARE), _FIRST_SHARE)
+        errors = []
+        for _ in range(self._effort.max_rounds):
             self._exchange(n_vertices, share)
             self._settle()
             report()
+            errors.append(self.error)
+            share = max(self._effort.share_decay * share, _LEAST_SHARE)
+            # The gain of a single round says little: the shares are taken by chance.
+            if len(errors) > _PATIENCE and errors[-1] > errors[-1 - _PATIENCE] * (
+                1.0 - _PATIENCE * self._least_gain
+            ):
+                break
 
     def resize(self, n_vertices: int) -> None:
         """Change the number of vertices, as far as there is anything to gain from more."""
-        self._exchange(n_vertices, _RESIZE_SHARE)
-        self._settle()
+        self.refine(n_vertices, _nothing)
 
     def _exchange(self, n_vertices: int, share: float) -> None:
         """Remove the least useful vertices and insert others where they gain most."""
@@ -203,3 +251,7 @@ def _open_surface(
         errors=np.zeros(n_triangles + 2 * n_spare),
         restless=np.ones(n_points + n_spare, dtype=np.bool_),
     )
+
+
+def _nothing() -> None:
+    """Report nothing."""
