@@ -8,6 +8,7 @@ import stat
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,13 +69,17 @@ def test_encode_meets_the_density_and_reports_as_json(tmp_path: Path) -> None:
     )
 
 
-def test_every_encoder_option_is_heard(tmp_path: Path) -> None:
-    names = "--gamma 0.7 --sampler channels --diffusion ostromoukhov --colors sampled"
+def test_every_option_of_the_paper_is_heard(tmp_path: Path) -> None:
+    names = (
+        "--method blue-noise --gamma 0.7 --sampler channels --diffusion ostromoukhov "
+        "--colors sampled"
+    )
     options = [*names.split(), "--color-step", "4", "--seed", "3", "--density", "0.005"]
     target = tmp_path / "out.vmesh"
     succeed("encode", CHELSEA, target, *options)
     mesh = vmesh.encode(
         np.asarray(Image.open(CHELSEA).convert("RGB")),
+        method="blue-noise",
         gamma=0.7,
         sampler="channels",
         diffusion="ostromoukhov",
@@ -85,6 +90,37 @@ def test_every_encoder_option_is_heard(tmp_path: Path) -> None:
     )
     loaded = vmesh.load(target)
     assert loaded == mesh.canonical().replaced(metadata=loaded.metadata)
+
+
+@pytest.mark.parametrize(
+    ("options", "settings"),
+    [
+        (["-q", "30", "-e", "2"], {"quality": 30, "effort": 2}),
+        (["--target-size", "900", "--effort", "1"], {"target_size": 900, "effort": 1}),
+        (["--target-psnr", "21", "-e", "1"], {"target_psnr": 21.0, "effort": 1}),
+        (["--vertices", "300", "-e", "3"], {"vertices": 300, "effort": 3}),
+    ],
+)
+def test_every_goal_and_effort_is_heard(
+    tmp_path: Path, options: list[str], settings: dict[str, Any]
+) -> None:
+    photograph = np.asarray(Image.open(CHELSEA).convert("RGB"))[:96, :128]
+    Image.fromarray(photograph).save(tmp_path / "in.png")
+    succeed("encode", tmp_path / "in.png", tmp_path / "out.vmesh", *options)
+    loaded = vmesh.load(tmp_path / "out.vmesh")
+    assert loaded == vmesh.encode(photograph, **settings)
+
+
+def test_two_goals_at_once_are_a_usage_error(tmp_path: Path) -> None:
+    text = fail(2, "encode", CHELSEA, tmp_path / "out.vmesh", "-q", "50", "--vertices", "100")
+    assert "quality and vertices" in text
+
+
+def test_a_size_that_no_mesh_fits_in_is_told_in_one_sentence(tmp_path: Path) -> None:
+    target = tmp_path / "out.vmesh"
+    text = fail(1, "encode", CHELSEA, target, "--target-size", "20", "-e", "1")
+    assert "smallest file" in text
+    assert not target.exists()
 
 
 @pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])
@@ -153,7 +189,7 @@ def test_info_decodes_the_mesh_if_asked_to(file: Path) -> None:
     mesh = vmesh.load(file)
     assert figures["triangles"] == mesh.n_triangles
     parts = {part["part"]: part["bytes"] for part in figures["parts"]}
-    assert list(parts) == ["frame", "positions", "colors"]
+    assert list(parts) == ["frame", "positions", "colors", "triangles"]
     assert sum(parts.values()) == figures["bytes"] == file.stat().st_size
     assert f"{mesh.n_triangles} triangles" in succeed("info", file, "--parts").decode()
 

@@ -7,12 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.codec import samples
 from tests.codec.damage import header_fields, split
 from tests.pictures import PICTURES, drawn
-from tests.strategies import meshes
-from vmesh.arrays import UInt8Array
+from tests.strategies import flipped, meshes, raster_sorted
+from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.codec.hierarchy import build_hierarchy
+from vmesh.codec.payloads import Encoder, find_flips
 from vmesh.codec.payloads import encode as encode_parts
 from vmesh.codec.reader import loads, measure
 from vmesh.codec.stream import dump, load
@@ -22,6 +25,15 @@ from vmesh.encoder.pipeline import encode
 from vmesh.errors import FormatError
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
+
+
+@st.composite
+def canvases(draw: st.DrawFn) -> Int32Array:
+    """Vertices of a canvas in raster order, its corners among them."""
+    far_x, far_y = draw(st.integers(1, 30)), draw(st.integers(1, 30))
+    site = st.tuples(st.integers(0, far_x), st.integers(0, far_y))
+    sites = draw(st.sets(site, max_size=50)) | {(0, 0), (far_x, 0), (0, far_y), (far_x, far_y)}
+    return raster_sorted(np.array(sorted(sites), dtype=np.int32))
 
 
 @given(meshes())
@@ -35,8 +47,18 @@ def test_a_mesh_that_was_read_is_written_as_the_same_bytes(mesh: Mesh) -> None:
     assert dumps(loads(data)) == data
 
 
-def test_the_same_mesh_gives_the_same_bytes_in_any_order() -> None:
-    mesh = samples.listed()
+@pytest.mark.parametrize("name", samples.CASES)
+def test_every_way_of_telling_triangles_comes_back(name: str) -> None:
+    mesh = samples.CASES[name]()
+    data = dumps(mesh)
+    ways = {"implied": 0, "listed": 1, "flipped": 2}
+    assert header_fields(data)["connectivity"] == ways.get(name.split()[-1], 0)
+    assert loads(data) == mesh
+
+
+@pytest.mark.parametrize("name", ["RGB, implied", "RGB, flipped", "RGB, listed"])
+def test_the_same_mesh_gives_the_same_bytes_in_any_order(name: str) -> None:
+    mesh = samples.CASES[name]()
     order = np.random.default_rng(2).permutation(mesh.n_vertices)
     place = np.argsort(order)
     shuffled = mesh.replaced(
@@ -68,33 +90,84 @@ def test_any_bytes_like_object_is_read(cast: type) -> None:
 def test_delaunay_triangles_are_not_written() -> None:
     for sample, parts in (
         (samples.color, ["positions", "colors"]),
-        (samples.listed, ["positions", "triangles", "colors"]),
+        (samples.flipped, ["positions", "colors", "triangles"]),
     ):
         data = dumps(sample())
         mesh, sizes = measure(data)
         assert mesh == loads(data)
         assert list(sizes) == parts
         assert all(size > 0 for size in sizes.values())
-        assert header_fields(data)["connectivity"] == len(parts) - 2
 
 
-@pytest.mark.parametrize("sample", [samples.smallest, samples.color, samples.listed])
-def test_the_parts_of_a_mesh_add_up_to_its_chunk(sample: type) -> None:
-    data = dumps(sample())
+def test_a_few_flips_take_less_than_a_list_and_more_of_them_take_more() -> None:
+    mesh = samples.color()
+    random = np.random.default_rng(5)
+    sizes = []
+    for n_flips in (3, 10, 30):
+        triangles = flipped(mesh.vertices, mesh.triangles, n_flips, random)
+        sizes.append(measure(dumps(mesh.replaced(triangles=triangles)))[1]["triangles"])
+    alone = encode_parts(lambda encoder: encoder.triangles(mesh.triangles, mesh.n_vertices))
+    assert sizes == sorted(sizes)
+    assert sizes[-1] < len(alone) / 2
+
+
+@given(canvases(), st.integers(0, 400), st.integers(0, 2**32 - 1))
+def test_any_random_flips_come_back(vertices: Int32Array, n_flips: int, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    triangles = flipped(vertices, delaunay(vertices), n_flips, random)
+    width, height = vertices[-1].tolist()
+    colors = random.integers(0, random.integers(2, 256), (len(vertices), 1))
+    mesh = Mesh.from_colors(width, height, vertices, triangles, colors)
+    assert loads(dumps(mesh)) == mesh
+
+
+@pytest.mark.parametrize("n_steps", range(1, 21))
+def test_meshes_come_back_whether_they_are_a_few_flips_or_a_list_away(n_steps: int) -> None:
+    mesh = two_rows(20, n_steps)
+    assert loads(dumps(mesh)) == mesh
+
+
+def two_rows(k: int, n_steps: int) -> Mesh:
+    """Vertices on the upper and lower border, joined with a number of steps aside."""
+    vertices = np.array([(x, y) for y in (0, 1) for x in range(k + 1)], dtype=np.int32)
+    triangles = []
+    upper = lower = 0
+    for step in [0] * n_steps + [1, 0] * (k - n_steps) + [1] * n_steps:
+        first, last = upper, k + 1 + lower
+        upper, lower = upper + 1 - step, lower + step
+        triangles.append((first, k + 1 + lower if step else upper, last))
+    levels = np.zeros((len(vertices), 1), dtype=np.int32)
+    mesh = Mesh(k, 1, vertices, np.array(triangles), levels, ColorLattice((1,)))
+    mesh.check()
+    return mesh.canonical()
+
+
+@pytest.mark.parametrize("name", ["smallest", "RGB, implied", "RGB, flipped", "RGB, listed"])
+def test_the_parts_of_a_mesh_add_up_to_its_chunk(name: str) -> None:
+    data = dumps(samples.CASES[name]())
     ((_, content),) = split(data)[1]
     assert sum(measure(data)[1].values()) == len(content)
 
 
-def test_each_part_takes_what_it_takes_alone() -> None:
+@pytest.mark.parametrize("name", ["RGB, flipped", "RGB, listed"])
+def test_each_part_takes_what_it_takes_alone(name: str) -> None:
     # Without the part after it, a part is written in as many bytes, but for rounding.
-    mesh = samples.listed()
+    mesh = samples.CASES[name]()
     columns, rows = mesh.width * mesh.unit + 1, mesh.height * mesh.unit + 1
+    implied = delaunay(mesh.vertices)
+    flips = find_flips(mesh)
+
+    def write_triangles(encoder: Encoder) -> None:
+        if flips is None:
+            encoder.triangles(mesh.triangles, mesh.n_vertices)
+        else:
+            encoder.flips(flips, implied, mesh)
+
+    hierarchy = build_hierarchy(mesh.vertices, implied)
     alone = {
         "positions": encode_parts(lambda e: e.positions(mesh.vertices, columns, rows)),
-        "triangles": encode_parts(lambda e: e.triangles(mesh.triangles, mesh.n_vertices)),
-        "colors": encode_parts(
-            lambda e: e.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
-        ),
+        "colors": encode_parts(lambda e: e.levels(mesh.levels, hierarchy, mesh.lattice)),
+        "triangles": encode_parts(write_triangles),
     }
     sizes = measure(dumps(mesh))[1]
     assert sizes == {part: pytest.approx(len(alone[part]), abs=2) for part in alone}

@@ -16,7 +16,7 @@ from vmesh.metrics import psnr
 
 @pytest.fixture(scope="module")
 def detailed(coffee: np.ndarray) -> vmesh.Mesh:
-    return vmesh.encode(coffee, vertices=20_000)
+    return vmesh.encode(coffee, method="blue-noise", vertices=20_000)
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_a_mesh_is_painted_on_any_cairo_context(coffee: np.ndarray) -> None:
     cairocffi = cairo_mesh.import_cairo()
     from vmesh.formats.pdf import paint_mesh
 
-    mesh = vmesh.encode(coffee, vertices=2000)
+    mesh = vmesh.encode(coffee, method="blue-noise", vertices=2000)
     surface = cairocffi.ImageSurface(cairocffi.FORMAT_RGB24, mesh.width * 2, mesh.height * 2)
     context = cairocffi.Context(surface)
     context.scale(2, 2)

@@ -19,7 +19,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 @pytest.fixture(scope="module")
 def detailed(coffee: np.ndarray) -> vmesh.Mesh:
-    return vmesh.encode(coffee, vertices=20_000)
+    return vmesh.encode(coffee, method="blue-noise", vertices=20_000)
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,17 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 from tests import twins
-from tests.strategies import raster_sorted
+from tests.strategies import flipped, point_sets, raster_sorted
 from vmesh.arrays import Int32Array, Int64Array
-from vmesh.kernels.delaunay import delaunay, in_circle, sort_triangles, sweep
+from vmesh.kernels.delaunay import (
+    TOO_MANY_FLIPS,
+    delaunay,
+    flip_to_delaunay,
+    in_circle,
+    sort_triangles,
+    sweep,
+)
+from vmesh.kernels.half_edges import find_twins
 from vmesh.mesh import MAX_LATTICE_SIDE, sorted_triangles
 
 
@@ -209,6 +217,66 @@ def test_areas_add_up_for_the_largest_coordinates() -> None:
     points, faces = as_points(vertices), as_faces(delaunay(vertices))
     assert_local_rule(points, faces)
     assert sum(twins.doubled_area(*(points[v] for v in face)) for face in faces) == 2 * far * far
+
+
+def as_edges(keys: Int64Array) -> list[tuple[int, int]]:
+    """Pairs of vertices, the lower one first."""
+    return [(int(key) >> 32, int(key) & 0xFFFFFFFF) for key in keys]
+
+
+def edges_of(triangles: Int32Array) -> set[tuple[int, int]]:
+    """Edges as pairs of vertices, the lower one first."""
+    return {(min(edge), max(edge)) for edge in twins.directed_edges(triangles)}
+
+
+def flipped_back(
+    vertices: Int32Array, triangles: Int32Array, room: int
+) -> tuple[int, Int32Array, Int64Array, Int64Array]:
+    """Number of flips to Delaunay, the triangles then, and the edges that came and went."""
+    origin = triangles.reshape(-1).copy()
+    created, removed = np.zeros((2, room), dtype=np.int64)
+    twin = find_twins(triangles, len(vertices))
+    count = flip_to_delaunay(vertices.astype(np.int64), origin, twin, created, removed)
+    return count, origin.reshape(-1, 3), created[:count], removed[:count]
+
+
+@given(point_sets(), st.integers(0, 200), st.integers(0, 2**32 - 1))
+def test_flips_lead_from_any_triangulation_to_delaunay(
+    drawn: tuple[int, int, Int32Array], n_flips: int, seed: int
+) -> None:
+    _, _, vertices = drawn
+    delaunay_triangles = delaunay(vertices)
+    triangles = flipped(vertices, delaunay_triangles, n_flips, np.random.default_rng(seed))
+    room = len(vertices) ** 2
+    count, result, created, removed = flipped_back(vertices, triangles, room)
+    assert count >= 0
+    assert np.array_equal(sorted_triangles(result), delaunay_triangles)
+    # No edge goes twice, none comes back, and the difference is that of the two triangulations.
+    came, went = as_edges(created), as_edges(removed)
+    assert len(set(went)) == len(set(came)) == count
+    assert edges_of(triangles) - edges_of(delaunay_triangles) == set(went) - set(came)
+    assert edges_of(delaunay_triangles) - edges_of(triangles) == set(came) - set(went)
+    for i, edge in enumerate(went):
+        assert edge not in came[i:]
+
+
+def test_a_delaunay_triangulation_takes_no_flips() -> None:
+    vertices = random_grid(np.random.default_rng(17), 30, 30, 0.5)
+    triangles = delaunay(vertices)
+    count, result, _, _ = flipped_back(vertices, triangles, 0)
+    assert count == 0
+    assert np.array_equal(result, triangles)
+
+
+def test_more_flips_than_there_is_room_for_are_told() -> None:
+    random = np.random.default_rng(18)
+    vertices = random_grid(random, 9, 9, 0.6)
+    triangles = flipped(vertices, delaunay(vertices), 60, random)
+    count, _, _, _ = flipped_back(vertices, triangles, 1000)
+    assert flipped_back(vertices, triangles, count)[0] == count
+    assert count > 1
+    for room in (0, 1, count - 1):
+        assert flipped_back(vertices, triangles, room)[0] == TOO_MANY_FLIPS
 
 
 def test_triangles_are_sorted_as_the_mesh_sorts_them() -> None:

@@ -1,17 +1,21 @@
 from __future__ import annotations
 
+from math import comb
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests import twins
-from tests.strategies import lattices, meshes, point_sets
+from tests.strategies import flipped, lattices, meshes, point_sets, raster_sorted
 from vmesh.arrays import Int32Array, UInt8Array
-from vmesh.codec.payloads import Decoder, encode
+from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
+from vmesh.codec.payloads import Decoder, Encoder, encode, find_flips
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
+from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh
 
 N_CONTEXTS = 5
@@ -20,7 +24,7 @@ Bits = list[tuple[int, int]]
 
 def written(bits: Bits) -> bytes:
     """Bytes of (context, bit) pairs."""
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(N_CONTEXTS)
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(N_CONTEXTS)
     data = np.zeros(len(bits) + 8, np.uint8)
     entropy.start(coder, data, 0)
     for context, bit in bits:
@@ -30,7 +34,7 @@ def written(bits: Bits) -> bytes:
 
 def read(data: bytes, contexts: list[int]) -> list[int]:
     """The bits that are read by the odds of these contexts."""
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(N_CONTEXTS)
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(N_CONTEXTS)
     given_bytes = np.frombuffer(bytearray(data), np.uint8)
     entropy.start(coder, given_bytes, 1)
     return [entropy.code_bit(coder, given_bytes, odds, context, 0) for context in contexts]
@@ -83,7 +87,7 @@ def test_nothing_takes_no_bytes() -> None:
 
 def test_odds_stay_within_their_bounds() -> None:
     for bit in (0, 1):
-        coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(1)
+        coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(1)
         data = np.zeros(4096, np.uint8)
         entropy.start(coder, data, 0)
         for _ in range(20_000):
@@ -95,28 +99,68 @@ def test_odds_stay_within_their_bounds() -> None:
 
 @given(st.lists(st.integers(0, 2**31 - 2), max_size=60))
 def test_numbers_come_back(numbers: list[int]) -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(entropy.NUMBER_CONTEXTS)
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.NUMBER_CONTEXTS)
     data = np.zeros(4096, np.uint8)
     entropy.start(coder, data, 0)
     for number in numbers:
         assert entropy.code_number(coder, data, odds, 0, number) == number
     payload = data[: entropy.finish(coder, data)].copy()
-    odds = entropy.fresh_odds(entropy.NUMBER_CONTEXTS)
+    odds = entropy.even_odds(entropy.NUMBER_CONTEXTS)
     entropy.start(coder, payload, 1)
     assert [entropy.code_number(coder, payload, odds, 0, 0) for _ in numbers] == numbers
 
 
-@given(st.lists(st.integers(0, 510), max_size=60))
+@given(st.lists(st.integers(0, 2**11 + 12), max_size=60))
 def test_sizes_come_back(sizes: list[int]) -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(entropy.SIZE_CONTEXTS)
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.SIZE_CONTEXTS)
     data = np.zeros(4096, np.uint8)
     entropy.start(coder, data, 0)
     for size in sizes:
         assert entropy.code_size(coder, data, odds, 0, size) == size
     payload = data[: entropy.finish(coder, data)].copy()
-    odds = entropy.fresh_odds(entropy.SIZE_CONTEXTS)
+    odds = entropy.even_odds(entropy.SIZE_CONTEXTS)
     entropy.start(coder, payload, 1)
     assert [entropy.code_size(coder, payload, odds, 0, 0) for _ in sizes] == sizes
+
+
+def test_a_size_of_too_many_bits_is_refused() -> None:
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.SIZE_CONTEXTS)
+    entropy.start(coder, as_bytes(bytes(64)), 0)
+    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**11 + 12) == 2**11 + 12
+    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**11 + 13) == -1
+    odds = entropy.even_odds(entropy.SIZE_CONTEXTS)
+    entropy.start(coder, as_bytes(bytes(64)), 1)  # Zeros are read as ones for ever.
+    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 0) == -1
+
+
+def test_odds_at_the_start_are_within_the_bounds_of_all_odds() -> None:
+    levels = [entropy.level_odds(n_components) for n_components in (1, 3, 4)]
+    for odds in (entropy.split_odds(), entropy.flip_odds(), *levels):
+        assert odds.dtype == np.int64
+        assert (odds[:, 0] >= 64).all()
+        assert (odds[:, 0] <= 65472).all()
+        assert set(odds[:, 1].tolist()) <= {0, 16}
+    assert len(entropy.split_odds()) == entropy.SPLIT_CONTEXTS
+    assert len(entropy.flip_odds()) == entropy.FLIP_CONTEXTS
+    assert [len(odds) for odds in levels] == [n * entropy.COMPONENT_CONTEXTS for n in (1, 3, 4)]
+
+
+@pytest.mark.parametrize("count", range(1, entropy.N_SMALL))
+def test_odds_at_the_start_spread_the_points_evenly_over_both_halves(count: int) -> None:
+    # By the odds of the steps of the search, every number of points has its binomial chance.
+    area = 5
+    odds = entropy.split_odds().reshape(-1, 2)
+    for number in range(count + 1):
+        low, high, chance = 0, count, 1.0
+        while low < high:
+            middle = (low + high) >> 1
+            context = (area * entropy.N_SMALL + count) * entropy.N_SMALL + middle
+            more = odds[context, 0] / 65536
+            if number > middle:
+                low, chance = middle + 1, chance * more
+            else:
+                high, chance = middle, chance * (1 - more)
+        assert chance == pytest.approx(comb(count, number) / 2**count, rel=1e-3)
 
 
 @given(point_sets())
@@ -177,24 +221,24 @@ def test_any_bytes_are_triangles_of_known_vertices_or_refused(
     assert (triangles < n_vertices).all()
 
 
+def hierarchy_of(mesh: Mesh) -> Hierarchy:
+    return build_hierarchy(mesh.vertices, delaunay(mesh.vertices))
+
+
 @given(meshes())
 def test_levels_come_back(mesh: Mesh) -> None:
-    payload = encode(
-        lambda encoder: encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
-    )
-    result = Decoder(payload, 0).levels(mesh.vertices, mesh.triangles, mesh.lattice)
-    assert np.array_equal(result, mesh.levels)
+    hierarchy = hierarchy_of(mesh)
+    payload = encode(lambda encoder: encoder.levels(mesh.levels, hierarchy, mesh.lattice))
+    assert np.array_equal(Decoder(payload, 0).levels(hierarchy, mesh.lattice), mesh.levels)
 
 
 @given(meshes(), st.sampled_from([0, 1]))
 def test_extreme_levels_come_back(mesh: Mesh, parity: int) -> None:
+    hierarchy = hierarchy_of(mesh)
     bounds = np.stack(mesh.lattice.level_bounds())
     levels = bounds[(np.arange(mesh.n_vertices) + parity) % 2]
-    payload = encode(
-        lambda encoder: encoder.levels(levels, mesh.vertices, mesh.triangles, mesh.lattice)
-    )
-    result = Decoder(payload, 0).levels(mesh.vertices, mesh.triangles, mesh.lattice)
-    assert np.array_equal(result, levels)
+    payload = encode(lambda encoder: encoder.levels(levels, hierarchy, mesh.lattice))
+    assert np.array_equal(Decoder(payload, 0).levels(hierarchy, mesh.lattice), levels)
 
 
 @given(meshes(), lattices(), st.binary(max_size=80))
@@ -202,13 +246,85 @@ def test_any_bytes_are_levels_within_bounds_or_refused(
     mesh: Mesh, lattice: ColorLattice, payload: bytes
 ) -> None:
     try:
-        levels = Decoder(payload, 7).levels(mesh.vertices, mesh.triangles, lattice)
+        levels = Decoder(payload, 7).levels(hierarchy_of(mesh), lattice)
     except FormatError as error:
         assert error.code == "colors"
         return
     lowest, highest = lattice.level_bounds()
     assert (levels >= lowest).all()
     assert (levels <= highest).all()
+
+
+def test_smooth_colors_take_fewer_bytes_than_rough_ones() -> None:
+    y, x = np.mgrid[:30, :30]
+    vertices = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
+    hierarchy = build_hierarchy(vertices, delaunay(vertices))
+    lattice = ColorLattice((1,))
+    noise = np.random.default_rng(3).integers(0, 256, 900)
+    sizes = []
+    for levels in (3 * x.ravel() + 5 * y.ravel(), (x * y).ravel() % 40, noise):
+        column = levels.astype(np.int32)[:, np.newaxis]
+
+        def write(encoder: Encoder, own: Int32Array = column) -> None:
+            encoder.levels(own, hierarchy, lattice)
+
+        sizes.append(len(encode(write)))
+    assert sizes == sorted(sizes)
+    assert sizes[0] < 300 < 900 < sizes[2]
+
+
+def flips_in_bytes(mesh: Mesh) -> bytes:
+    """The flips from the Delaunay triangles to those of a mesh."""
+    flips = find_flips(mesh)
+    assert flips is not None
+    return encode(lambda encoder: encoder.flips(flips, delaunay(mesh.vertices), mesh))
+
+
+@given(meshes())
+def test_flips_come_back(mesh: Mesh) -> None:
+    decoder = Decoder(flips_in_bytes(mesh), 0)
+    triangles = decoder.flips(mesh.vertices, delaunay(mesh.vertices), mesh.levels)
+    assert np.array_equal(triangles, mesh.triangles)
+
+
+def test_flips_on_the_largest_lattice_come_back() -> None:
+    # Cotangents of the thinnest triangles of the largest canvas do not overflow.
+    far = 1 << 19
+    random = np.random.default_rng(9)
+    thin = [(int(x), int(y)) for x, y in random.integers(0, [far + 1, 4], (60, 2))]
+    sites = {*thin, *((y, far - x) for x, y in thin), (0, 0), (far, 0), (0, far), (far, far)}
+    vertices = raster_sorted(np.array(sorted(sites), dtype=np.int32))
+    triangles = flipped(vertices, delaunay(vertices), 60, random)
+    levels = random.integers(0, 256, (len(vertices), 1), dtype=np.int32)
+    mesh = Mesh(1 << 15, 1 << 15, vertices, triangles, levels, ColorLattice((1,)), 4)
+    mesh.check()
+    decoder = Decoder(flips_in_bytes(mesh), 0)
+    result = decoder.flips(mesh.vertices, delaunay(mesh.vertices), mesh.levels)
+    assert np.array_equal(result, mesh.triangles)
+
+
+@given(meshes(), st.binary(max_size=120))
+def test_any_bytes_are_flips_to_a_valid_mesh_or_refused(mesh: Mesh, payload: bytes) -> None:
+    decoder = Decoder(payload, 7)
+    try:
+        triangles = decoder.flips(mesh.vertices, delaunay(mesh.vertices), mesh.levels)
+    except FormatError as error:
+        assert error.code == "triangles"
+        assert 7 <= error.offset <= 7 + len(payload)
+        return
+    mesh.replaced(triangles=triangles).check()
+
+
+@given(meshes())
+def test_flips_without_end_are_refused(mesh: Mesh) -> None:
+    # Zeros are read as ones for ever: whatever can be flipped is flipped, again and again.
+    decoder = Decoder(bytes(4000), 0)
+    try:
+        triangles = decoder.flips(mesh.vertices, delaunay(mesh.vertices), mesh.levels)
+    except FormatError as error:
+        assert "out of range" in str(error)
+        return
+    mesh.replaced(triangles=triangles).check()
 
 
 def test_a_payload_longer_than_the_first_buffer_is_written_whole() -> None:
@@ -222,7 +338,7 @@ def test_a_payload_longer_than_the_first_buffer_is_written_whole() -> None:
 
 
 def test_the_writer_never_writes_beyond_its_room() -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.fresh_odds(1)
+    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(1)
     data = np.zeros(6, np.uint8)
     entropy.start(coder, data[:4], 0)
     for i in range(400):

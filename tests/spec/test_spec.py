@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,13 +20,18 @@ from tests.codec.damage import (
     checked,
     chunk_of,
     file_of,
+    header_fields,
     padded,
     split,
     varint,
+    with_content,
     with_header,
 )
+from tests.strategies import meshes
+from vmesh.arrays import Int32Array
 from vmesh.codec import layout
-from vmesh.codec.payloads import Encoder, encode
+from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
+from vmesh.codec.payloads import Decoder, Encoder, encode
 from vmesh.codec.reader import measure
 from vmesh.color_lattice import MAX_STEP, ColorLattice
 from vmesh.kernels import entropy
@@ -133,10 +139,27 @@ def flipped(mesh: Mesh, n_flips: int) -> Mesh:
     return mesh.replaced(triangles=np.array(faces, dtype=np.int32)).canonical()
 
 
-def picture(height: int, width: int, *components: int) -> Mesh:
+def askew(width: int) -> Mesh:
+    """Two rows of vertices, the upper ones all joined to one of the lower: far from Delaunay."""
+    vertices = np.array([(x, y) for y in (0, 1) for x in range(width + 1)], dtype=np.int32)
+    triangles = [(x, x + 1, width + 1) for x in range(width)]
+    triangles += [(width, width + 2 + x, width + 1 + x) for x in range(width)]
+    colors = np.random.default_rng(width).integers(0, 256, (len(vertices), 3))
+    return Mesh.from_colors(width, 1, vertices, np.array(triangles), colors).canonical()
+
+
+def picture(height: int, width: int, *components: int, method: str = "blue-noise") -> Mesh:
     """What the encoder makes of noise."""
     noise = np.random.default_rng(1).integers(0, 256, (height, width, *components), dtype=np.uint8)
-    return vmesh.encode(noise)
+    return vmesh.encode(noise, method=method)
+
+
+def gradient(height: int, width: int) -> Mesh:
+    """What the adaptive encoder makes of a soft slanted edge."""
+    y, x = np.mgrid[:height, :width]
+    level = np.clip(128 + 12 * (x + 3 * y - width - height), 0, 255)
+    planes = np.stack([level, 255 - level, level // 2], axis=2).astype(np.uint8)
+    return vmesh.encode(planes, vertices=60)
 
 
 def grid(side: int) -> Mesh:
@@ -165,8 +188,12 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
     "step 8": lambda: mesh_of(16, 12, 4, n_vertices=40, step=8),
     "step 255": lambda: mesh_of(8, 8, 3, n_vertices=30, step=255),
     "wide and flat": lambda: mesh_of(300, 1, 3, n_vertices=50, subdivision=2),
-    "listed": lambda: flipped(mesh_of(16, 12, 3, n_vertices=70), 12),
-    "listed, two triangles": lambda: flipped(mesh_of(5, 3, 1), 1),
+    "flipped": lambda: flipped(mesh_of(16, 12, 3, n_vertices=70), 12),
+    "flipped, ties": lambda: flipped(grid(8), 20),
+    "flipped, two triangles": lambda: flipped(mesh_of(5, 3, 1), 1),
+    "flipped, subdivision 8": lambda: flipped(mesh_of(11, 13, 4, n_vertices=40, subdivision=8), 7),
+    "flipped, adaptive": lambda: gradient(24, 32),
+    "listed": lambda: askew(24),
     "metadata": lambda: mesh_of(4, 4, 3, n_vertices=9, metadata=_METADATA),
 }
 
@@ -221,10 +248,17 @@ def test_each_centre_is_in_the_same_triangle_by_specification_and_library(name: 
         assert [[pixel is not None for pixel in row] for row in rows] == (counts == 1).tolist()
 
 
-def test_the_flipped_meshes_have_listed_triangles_and_the_others_do_not() -> None:
-    for name, make in MESHES.items():
-        _, sizes = measure(vmesh.dumps(make()))
-        assert ("triangles" in sizes) == name.startswith("listed"), name
+@pytest.mark.parametrize("name", MESHES)
+def test_the_meshes_tell_their_triangles_as_their_names_say(name: str) -> None:
+    connectivity = header_fields(vmesh.dumps(MESHES[name]()))["connectivity"]
+
+    assert connectivity == {"listed": 1, "flipped": 2}.get(name.split(",")[0], 0)
+
+
+@settings(max_examples=60)
+@given(meshes())
+def test_any_mesh_means_the_same_to_specification_and_library(mesh: Mesh) -> None:
+    assert_same_mesh(decode(vmesh.dumps(mesh)), mesh)
 
 
 def test_the_encoder_of_the_specification_writes_the_bytes_of_the_library() -> None:
@@ -232,26 +266,114 @@ def test_the_encoder_of_the_specification_writes_the_bytes_of_the_library() -> N
     contexts = random.integers(0, 5, 3000).tolist()
     bits = (random.random(3000) < np.array([0.5, 0.99, 0.01, 0.9, 0.0])[contexts]).tolist()
     by_specification = SPEC["RangeEncoder"]()
-    odds = entropy.fresh_odds(5)
+    starts = [None, 2048, 63488, 43690, None]
+    odds = entropy.even_odds(5)
+    for context, start in enumerate(starts):
+        if start:
+            odds[context] = start, entropy.SPLIT_SEEN
 
     def write(encoder: Encoder) -> None:
         for context, bit in zip(contexts, bits, strict=True):
             entropy.code_bit(encoder.coder, encoder.data, odds, context, int(bit))
 
     for context, bit in zip(contexts, bits, strict=True):
-        by_specification.bit(int(bit), context)
+        by_specification.bit(int(bit), context, start=starts[context])
     content = by_specification.content()
 
     assert content == encode(write)
     decoder = SPEC["RangeDecoder"](content)
-    assert [decoder.bit(context) for context in contexts] == bits
+    assert [decoder.bit(context, start=starts[context]) for context in contexts] == bits
     decoder.end()
+
+
+class Script:
+    """Stands for a decoder: writes the bits that a function wants, and returns them."""
+
+    def __init__(self, wanted: Callable[[int], int]) -> None:
+        self.wanted = wanted
+        self.encoder = SPEC["RangeEncoder"]()
+        self.n_bits = 0
+        self.part = ""
+
+    def bit(self, *context: object, start: int | None = None) -> int:
+        bit = self.wanted(self.n_bits)
+        self.n_bits += 1
+        self.encoder.bit(bit, *context, start=start)
+        return bit
+
+
+@pytest.mark.parametrize("more", [-1, 0, 1])
+def test_as_many_flips_as_half_edges_are_read_and_no_more(more: int) -> None:
+    mesh = mesh_of(6, 5, 1, n_vertices=15)
+    vertices, triangles = mesh.vertices.tolist(), mesh.triangles.tolist()
+    n_flips = mesh.triangles.size + more
+    script = Script(lambda n_bits: int(n_bits < n_flips))
+
+    def by_specification() -> object:
+        return SPEC["read_flips"](script, vertices, triangles, mesh.levels[:, 0].tolist())
+
+    def by_library() -> object:
+        decoder = Decoder(script.encoder.content() + bytes(1000), 0)
+        flips = decoder.flips(mesh.vertices, mesh.triangles, mesh.levels)
+        return [tuple(face) for face in flips.tolist()]
+
+    if more > 0:
+        with pytest.raises(SPEC["Invalid"]):
+            by_specification()
+        with pytest.raises(vmesh.FormatError, match="out of range"):
+            by_library()
+    else:
+        assert by_specification() == by_library()
+
+
+def test_the_size_of_a_difference_has_the_same_bound_by_specification_and_library() -> None:
+    most = 14 + 10
+    assert SPEC["read_size"](Script(lambda i: int(i != most)), 0, 0) == 2**11 + 12
+    with pytest.raises(SPEC["Invalid"]):
+        SPEC["read_size"](Script(lambda i: 1), 0, 0)
+
+
+def assert_same_levels(levels: Int32Array, around: list[list[int]]) -> None:
+    """Both read the levels of vertices in order, each between parents before it, as written."""
+    n, n_components = levels.shape
+    starts = np.cumsum([0, *map(len, around)])
+    parents = np.array([u for own in around for u in own], dtype=np.int32)
+    hierarchy = Hierarchy(np.arange(n, dtype=np.int32), starts, parents)
+    lattice = ColorLattice((1,) * n_components)
+    content = encode(lambda encoder: encoder.levels(levels, hierarchy, lattice))
+    assert np.array_equal(Decoder(content, 0).levels(hierarchy, lattice), levels)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(SPEC, "hierarchy", lambda *_: enumerate(around))
+        decoder = SPEC["RangeDecoder"](content)
+        read = SPEC["read_levels"](decoder, [(0, 0)] * n, [], lattice.steps)
+    assert read == levels.tolist()
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 4]), st.sampled_from([2, 30, 256]))
+def test_levels_between_any_parents_mean_the_same_to_specification_and_library(
+    seed: int, n_components: int, n_levels: int
+) -> None:
+    random = np.random.default_rng(seed)
+    around = [random.permutation(i)[: random.integers(1, 21)].tolist() for i in range(50)]
+    levels = random.integers(0, n_levels, (50, n_components), dtype=np.int32)
+    assert_same_levels(levels, around)
+
+
+@pytest.mark.parametrize("share", range(21))
+def test_means_on_the_thresholds_lean_the_same_way_by_specification_and_library(share: int) -> None:
+    # Of twenty parents a share has the level 6 and the others 5: a twentieth each from 5 to 6.
+    # Above are the vertices between them, below some whose mean is whole, so that their signs
+    # differ if the leans do.
+    parents = [6] * share + [5] * (20 - share)
+    levels = np.array([*parents, *[9, 2] * 20], dtype=np.int32)[:, np.newaxis]
+    chain = [[i - 1] if i else [] for i in range(20)]
+    assert_same_levels(levels, [*chain, *[list(range(20)), [0]] * 20])
 
 
 def test_both_encoders_cut_no_more_than_four_zeros() -> None:
     # Ones keep the low end of the interval at 0; a hundred halvings shift it by twelve bytes.
     by_specification = SPEC["RangeEncoder"]()
-    odds = entropy.fresh_odds(100)
+    odds = entropy.even_odds(100)
 
     def write(encoder: Encoder) -> None:
         for context in range(100):
@@ -278,7 +400,12 @@ def corners_only(width: int, height: int, colors: list[int]) -> Mesh:
     )
 
 
-DUMPED: Final = [corners_only(2, 1, [0, 255, 0, 255]), corners_only(1, 1, [0, 0, 0, 0])]
+_TWO_PIXELS: Final = corners_only(2, 1, [0, 255, 0, 255])
+DUMPED: Final = [
+    _TWO_PIXELS,
+    _TWO_PIXELS.replaced(triangles=np.array([(0, 1, 2), (1, 3, 2)], dtype=np.int32)),
+    corners_only(1, 1, [0, 0, 0, 0]),
+]
 
 
 def test_every_dump_is_the_file_of_its_picture() -> None:
@@ -287,7 +414,7 @@ def test_every_dump_is_the_file_of_its_picture() -> None:
     assert [dump.hex(" ") for dump in dumps] == [vmesh.dumps(mesh).hex(" ") for mesh in DUMPED]
     for dump, mesh in zip(dumps, DUMPED, strict=True):
         assert_same_mesh(decode(dump), mesh)
-    assert f"has {len(dumps[1])} bytes" in section(15)
+    assert f"has {len(dumps[-1])} bytes" in section(15)
 
 
 def test_every_line_of_the_dumps_is_explained() -> None:
@@ -304,23 +431,26 @@ def test_the_pixels_of_the_annotated_file_are_as_stated() -> None:
 
 
 def test_the_bits_of_the_annotated_file_are_as_stated(monkeypatch: pytest.MonkeyPatch) -> None:
-    bits = {"positions": "", "colors": ""}
+    bits = {"positions": "", "colors": "", "triangles": ""}
 
     read_bit = SPEC["RangeDecoder"].bit
 
-    def record(decoder: Any, *context: object) -> int:
-        bit: int = read_bit(decoder, *context)
+    def record(decoder: Any, *context: object, start: int | None = None) -> int:
+        bit: int = read_bit(decoder, *context, start=start)
         bits[decoder.part] += str(bit)
         return bit
 
     monkeypatch.setattr(SPEC["RangeDecoder"], "bit", record)
-    decode(vmesh.dumps(DUMPED[0]))
+    decode(vmesh.dumps(DUMPED[1]))
 
     def digits(rows: list[list[str]], column: int) -> str:
         return "".join(re.sub(r"\D", "", row[column]) for row in rows)
 
     assert bits["positions"] == digits(table(section(15), "Box"), 3)
     assert bits["colors"] == digits(table(section(15), "Vertex"), 5)
+    stated = re.search(r"comes one bit, `(\d)`", section(15))
+    assert stated
+    assert bits["triangles"] == stated[1]
 
 
 # Section 12: the error codes, and files that bring them about.
@@ -344,6 +474,7 @@ def test_the_error_codes_are_those_of_the_library() -> None:
 _VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=_METADATA), 2))
 _HEADER, _CHUNKS = split(_VALID)
 _MESH: Final = _CHUNKS[-1]
+_SIZES: Final = measure(_VALID)[1]
 _START: Final = checked(SIGNATURE + _HEADER)
 
 
@@ -362,17 +493,36 @@ def with_numbers(*numbers: bytes) -> bytes:
     return file_of(_HEADER[:2] + b"".join(numbers) + _HEADER[-3:], _CHUNKS)
 
 
+def without_triangles(encoder: Encoder, mesh: Mesh) -> None:
+    """Write positions and colours of a mesh."""
+    columns, rows = (side * mesh.unit + 1 for side in (mesh.width, mesh.height))
+    encoder.positions(mesh.vertices, columns, rows)
+    hierarchy = build_hierarchy(mesh.vertices, delaunay(mesh.vertices))
+    encoder.levels(mesh.levels, hierarchy, mesh.lattice)
+
+
 def listed(mesh: Mesh, *triangles: tuple[int, int, int]) -> bytes:
     """A file of the mesh with listed triangles that need not make sense."""
-    columns, rows = (side * mesh.unit + 1 for side in (mesh.width, mesh.height))
 
     def write(encoder: Encoder) -> None:
-        encoder.positions(mesh.vertices, columns, rows)
+        without_triangles(encoder, mesh)
         encoder.triangles(np.array(triangles, dtype=np.int32), n_vertices=1000)
-        encoder.levels(mesh.levels, mesh.vertices, mesh.triangles, mesh.lattice)
 
     header, _ = split(with_header(vmesh.dumps(mesh), connectivity=1))
     return file_of(header, [(b"M", encode(write))])
+
+
+def flipped_for_ever(mesh: Mesh) -> bytes:
+    """A file of the mesh in which every edge that can be flipped is flipped."""
+
+    def write(encoder: Encoder) -> None:
+        without_triangles(encoder, mesh)
+        odds = entropy.even_odds(64)
+        for context in range(64):  # Zeros that follow many ones are read as ones.
+            entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+
+    header, _ = split(with_header(vmesh.dumps(mesh), connectivity=2))
+    return file_of(header, [(b"M", encode(write) + bytes(400))])
 
 
 def misplaced(width: int, height: int, *vertices: tuple[int, int]) -> bytes:
@@ -389,6 +539,14 @@ def fan(side: int, x: int, y: int) -> Mesh:
     triangles = np.array([(0, 1, 2), (0, 2, 3), (1, 4, 2), (2, 4, 3)], dtype=np.int32)
     return Mesh.from_colors(side, side, vertices, triangles, [[5], [90], [200], [40], [250]])
 
+
+def cut(data: bytes, n_bytes: int) -> bytes:
+    """The file without some bytes at the end of its mesh."""
+    return with_content(data, b"M", split(data)[1][-1][1][:-n_bytes])
+
+
+_LIST: Final = vmesh.dumps(askew(20))
+_FLIPPED: Final = vmesh.dumps(flipped(mesh_of(16, 12, 3, n_vertices=70), 12))
 
 DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "nothing": ("truncated", b""),
@@ -418,7 +576,6 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "subdivision 9": ("header", with_header(_VALID, subdivision=9)),
     "a huge lattice": ("header", with_header(_VALID, height=65_535, subdivision=4)),
     "two components": ("header", with_header(_VALID, b"\1\1", components=1)),
-    "flipped edges": ("header", with_header(_VALID, connectivity=2)),
     "unknown connectivity": ("header", with_header(_VALID, connectivity=3)),
     "three vertices": ("header", with_header(_VALID, n_vertices=3)),
     "too many vertices": ("header", with_header(_VALID, n_vertices=43)),
@@ -447,9 +604,16 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "half of the positions": ("positions", with_mesh(_MESH[1][:2])),
     "other positions": ("geometry", misplaced(3, 3, (1, 1), (2, 1), (1, 2), (2, 2))),
     "three corners": ("geometry", misplaced(3, 3, (0, 0), (3, 0), (0, 3), (2, 3))),
-    "half of the triangles": ("triangles", with_mesh(_MESH[1][:14])),
-    "half of the colours": ("colors", with_mesh(_MESH[1][:-20])),
-    "more colours": ("colors", with_mesh(_MESH[1] + bytes(9))),
+    "half of the colours": ("colors", with_mesh(_MESH[1][: _SIZES["positions"] + 12])),
+    "more colours": ("colors", with_header(_FLIPPED, connectivity=0)),
+    "half of the flips": ("triangles", cut(_FLIPPED, 6)),
+    "more flips": ("triangles", with_mesh(_MESH[1] + bytes(9))),
+    "flips without end": ("triangles", flipped_for_ever(mesh_of(6, 5, 1, n_vertices=15))),
+    "half of a list": ("triangles", cut(_LIST, 20)),
+    "corners missing though triangles are listed": (
+        "geometry",
+        with_header(misplaced(3, 3, (1, 1), (2, 1), (1, 2), (2, 2)), connectivity=1),
+    ),
     "an unknown third vertex": (
         "triangles",
         listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 5), (2, 4, 3)),
@@ -503,16 +667,20 @@ def test_every_truncation_has_the_same_code_by_specification_and_library() -> No
         assert code_of(decode, _VALID[:length]) == code
 
 
-@settings(max_examples=200)
-@given(st.integers(0, len(_MESH[1])), st.binary(max_size=40))
-@example(0, bytes(40))
-@example(0, b"\xff" * 40)
-@example(len(_MESH[1]), b"\0")
-@example(len(_MESH[1]) - 1, b"")
+_IMPLIED: Final = vmesh.dumps(mesh_of(6, 5, 3, n_vertices=15))
+
+
+@settings(max_examples=300)
+@given(st.sampled_from([_VALID, _LIST, _IMPLIED]), st.integers(0, 200), st.binary(max_size=40))
+@example(_VALID, 0, bytes(40))
+@example(_VALID, 0, b"\xff" * 40)
+@example(_VALID, 200, b"\0")
+@example(_LIST, 200, b"\0")
+@example(_IMPLIED, 200, b"\0")
 def test_any_coded_mesh_means_the_same_to_specification_and_library(
-    length: int, rest: bytes
+    valid: bytes, length: int, rest: bytes
 ) -> None:
-    data = with_mesh(_MESH[1][:length] + rest)
+    data = with_content(valid, b"M", split(valid)[1][-1][1][:length] + rest)
 
     code = code_of(decode, data)
     assert code == code_of(vmesh.loads, data)
@@ -601,9 +769,78 @@ def test_the_contexts_are_as_many_as_stated() -> None:
 
     assert stated == {
         "positions": entropy.SPLIT_CONTEXTS,
-        "triangles": 3 * entropy.NUMBER_CONTEXTS,
         "colours": entropy.COMPONENT_CONTEXTS,
+        "flipped triangles": entropy.FLIP_CONTEXTS,
+        "listed triangles": 3 * entropy.NUMBER_CONTEXTS,
     }
+
+
+def test_the_odds_at_the_start_are_as_stated() -> None:
+    odds = entropy.split_odds()
+    for count, stated in table(section(6), "Count"):
+        shares = [int(share) for share in stated.split(", ")]
+        assert shares == [SPEC["binomial_share"](int(count), i) for i in range(int(count))]
+        for area in range(entropy.N_AREA_CLASSES):
+            first = (area * entropy.N_SMALL + int(count)) * entropy.N_SMALL
+            own = odds[first : first + int(count)]
+            assert own[:, 0].tolist() == ([2048] * int(count) if area < 2 else shares)
+            assert set(own[:, 1].tolist()) == {16}
+    assert len(table(section(6), "Count")) == entropy.N_SMALL - 1
+    assert SPEC["SPREADS"] == entropy.SPREADS
+    assert SPEC["ANGLES"] == entropy.ANGLES
+    assert tuple(map(tuple, SPEC["MORE_THAN"])) == entropy.LEVEL_PRIORS
+    assert np.ravel(SPEC["FLIPPED"]).tolist() == list(entropy.FLIP_PRIORS)
+
+
+def test_no_number_is_larger_than_stated() -> None:
+    sizes = {(section, name.split(",")[0]): bound for section, name, bound in widths()}
+    far = 2**19
+    square = [(0, 0), (far, 0), (far, far), (0, far)]
+    cross, in_circle = SPEC["cross"], SPEC["in_circle"]
+    # The centre of the largest circle is a corner's; nine parents, half of them at either end.
+    largest = {
+        ("6.1", "room of a box"): (far + 1) ** 2,
+        ("6.2", "doubled area of three vertices"): cross(*square[:3]),
+        ("6.2", "in-circle determinant"): abs(in_circle(*square[:3], (far // 2, far // 2))),
+        ("7.3", "sum of the weights"): 9 * 4096,
+        ("7.3", "sum of weight times level"): 9 * 4096 * 255,
+        ("7.3", "sum of weight times level times level"): 9 * 4096 * 255**2,
+        ("7.4", "numerator of the variance"): 1024 * 255**2 * (9 * 4096) ** 2,
+        ("8.2", "cotangent in sixteenths"): 16 * 2 * far**2,
+    }
+    assert largest.keys() < sizes.keys()
+    for key, value in largest.items():
+        assert value < sizes[key], key
+
+
+def widths() -> Iterator[tuple[str, str, int]]:
+    """Section, name and bound of the quantities that need the most bits."""
+    for number, name, bound in table(section(2), "Section"):
+        power = re.search(r"2\*\*(\d+)$", bound)
+        assert power
+        yield number, name, 2 ** int(power[1])
+
+
+def test_the_layers_hold_as_few_vertices_as_stated() -> None:
+    mesh = mesh_of(40, 30, 1, n_vertices=300)
+    vertices = [(int(x), int(y)) for x, y in mesh.vertices]
+    sizes: list[int] = []
+    triangulate = SPEC["delaunay"]
+
+    def record(vertices: list[tuple[int, int]], *far: int) -> object:
+        sizes.append(len(vertices))
+        return triangulate(vertices, *far)
+
+    implied = triangulate(vertices, 40, 30)
+    SPEC["delaunay"] = record
+    try:
+        SPEC["hierarchy"](vertices, implied, 40, 30)
+    finally:
+        SPEC["delaunay"] = triangulate
+    sizes.insert(0, len(vertices))
+    assert all(b <= 4 + 19 * (a - 4) // 20 for a, b in pairwise(sizes))
+    assert sizes[-1] == 4
+    assert sum(sizes) < 4 * len(vertices)
 
 
 def test_the_limits_are_as_stated() -> None:
@@ -614,6 +851,7 @@ def test_the_limits_are_as_stated() -> None:
         "subdivision": MAX_SUBDIVISION,
         "lattice units a side": MAX_LATTICE_SIDE,
         "colour step": MAX_STEP,
+        "coded flips for each half-edge": entropy.MAX_FLIPS,
         "bytes in a chunk": 2**31 - 1,
     }
 
@@ -639,4 +877,4 @@ def test_the_sections_that_the_sources_name_are_there() -> None:
 def test_the_code_blocks_import_the_standard_library_only() -> None:
     imported = re.findall(r"^(?:import|from) (\w+)", "\n".join(blocks("python")), re.MULTILINE)
 
-    assert set(imported) == {"struct", "zlib", "collections"}
+    assert set(imported) == {"struct", "zlib", "collections", "math"}

@@ -1,4 +1,4 @@
-"""The coded mesh: positions, triangles and colours in one stream (spec, sections 5 to 8)."""
+"""The coded mesh: positions, colours and triangles in one stream (spec, sections 5 to 8)."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ def find_flips(mesh: Mesh) -> Flips | None:
     None if they are too many for flips to be a good way of coding.
     """
     origin = mesh.triangles.reshape(-1).copy()
-    room = (2, _MAX_FLIPS * mesh.n_vertices)
-    created, removed = np.zeros(room, dtype=np.int64)
+    room = min(_MAX_FLIPS * mesh.n_vertices, entropy.MAX_FLIPS * origin.size)
+    created, removed = np.zeros((2, room), dtype=np.int64)
     count = flip_to_delaunay(
         mesh.vertices.astype(np.int64),
         origin,

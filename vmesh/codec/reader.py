@@ -44,8 +44,8 @@ def measure(
     -------
     Mesh
     dict
-        Bytes of ``positions``, of ``triangles`` if they are listed, and of ``colors``. They share
-        one stream: a byte on the bound between two parts belongs to one of them.
+        Bytes of ``positions``, of ``colors``, and of ``triangles`` if they are not implied. They
+        share one stream: a byte on the bound between two parts belongs to one of them.
     """
     header, chunks = layout.read_file(bytes(memoryview(data)))
     limits.check_pixels(header.width, header.height)

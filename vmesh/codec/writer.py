@@ -17,12 +17,16 @@ def dumps(mesh: Mesh) -> bytes:
     ----------
     mesh : Mesh
         A mesh that passes :meth:`Mesh.check`. Its vertices and triangles are written in
-        canonical order; triangles that are the canonical Delaunay triangles cost nothing.
+        canonical order; the canonical Delaunay triangles cost nothing, triangles that are some
+        flips away cost the flips, others are listed.
 
     Raises
     ------
     ValueError
         If the mesh breaks a rule of the format, such as not covering its canvas.
+    LimitError
+        If its positions are arranged so that their Delaunay triangulation, which every file needs,
+        takes too long: see :func:`vmesh.kernels.delaunay.delaunay`.
     """
     mesh.check()
     ordered = mesh.canonical()

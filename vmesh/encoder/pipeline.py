@@ -180,12 +180,12 @@ def _remesh(image: UInt8Array, settings: Settings, report: Progress) -> Draft:
     if wanted is not None:
         start = max(start, _LEAST_CHOICE * wanted)
     while True:
-        start = min(start, width * height)
+        start = max(4, min(start, width * height))
         _, samples = propose(image, _with_vertices(settings, start))
         draft = Remesher(image, samples.vertices(), effort)
         n_start = draft.n_vertices
         _thin(draft, settings, wanted, lambda: report("thinning"))
-        if _LEAST_CHOICE * draft.n_vertices <= n_start or start == width * height:
+        if _LEAST_CHOICE * draft.n_vertices <= n_start or start >= width * height:
             break
         # There was too little to choose from.
         start = 2 * _LEAST_CHOICE * draft.n_vertices

@@ -29,12 +29,18 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
         leaving[filled[origin[e]]] = e
         filled[origin[e]] += 1
     twin = np.full(origin.shape[0], -1, np.int32)
-    for e in range(origin.shape[0]):
-        target = origin[e - 2 if e % 3 == 2 else e + 1]
-        for i in range(starts[target], starts[target + 1]):
-            f = leaving[i]
-            if origin[f - 2 if f % 3 == 2 else f + 1] == origin[e]:
-                twin[e] = f
+    # Those that leave a vertex, by their ends; what is left of other vertices starts elsewhere.
+    # So a vertex of very many triangles costs no more than its share.
+    to = np.full(n_vertices, -1, np.int32)
+    for v in range(n_vertices):
+        for i in range(starts[v], starts[v + 1]):
+            e = leaving[i]
+            to[origin[e - 2 if e % 3 == 2 else e + 1]] = e
+        for i in range(starts[v], starts[v + 1]):
+            arriving = leaving[i] + 2 if leaving[i] % 3 == 0 else leaving[i] - 1
+            e = to[origin[arriving]]
+            if e >= 0 and origin[e] == v:
+                twin[arriving] = e
     return twin
 
 
