@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import strategies as st
 
-from vmesh.arrays import Int32Array
+from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata, sorted_triangles
@@ -64,6 +64,19 @@ def point_sets(draw: st.DrawFn, most: int = 40) -> tuple[int, int, Int32Array]:
     site = st.tuples(st.integers(0, columns - 1), st.integers(0, rows - 1))
     sites = draw(st.sets(site, min_size=1, max_size=most))
     return columns, rows, raster_sorted(np.array(sorted(sites), dtype=np.int32))
+
+
+@st.composite
+def pictures(draw: st.DrawFn, most: int = 12) -> UInt8Array:
+    """Pictures of shape (h, w, c): noise of a few or many levels, in blocks or single pixels."""
+    height, width = draw(st.integers(1, most)), draw(st.integers(1, most))
+    n_components, block = draw(st.sampled_from([1, 3, 4])), draw(st.integers(1, 4))
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    levels = random.integers(0, 256, draw(st.sampled_from([1, 2, 256])), dtype=np.uint8)
+    blocks = random.choice(levels, (height, width, n_components))
+    y, x = np.mgrid[:height, :width] // block
+    result: UInt8Array = np.ascontiguousarray(blocks[y, x])
+    return result
 
 
 @st.composite

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -187,7 +187,7 @@ def range_coded(bits: Iterable[tuple[int, int]], n_contexts: int) -> bytes:
         else:
             low, span = low + split, span - split
         moved = probability + (65536 * bit - probability) // (seen + 2)
-        odds[context] = [min(max(moved, 64), 65472), min(seen + 1, 62)]
+        odds[context] = [min(max(moved, 64), 65472), min(seen + 1, 250)]
         while span < 2**24:
             low, span, n_bytes = low << 8, span << 8, n_bytes + 1
     # Of the numbers in the final range, the one that ends in the most zero bits.
@@ -196,3 +196,130 @@ def range_coded(bits: Iterable[tuple[int, int]], n_contexts: int) -> bytes:
         if value < low + span:
             break
     return value.to_bytes(n_bytes, "big").rstrip(b"\0")
+
+
+def directed_edges(triangles: Iterable[Sequence[int]]) -> dict[tuple[int, int], int]:
+    """Where each directed edge stands among the half-edges: 3 t + i leaves corner i of t."""
+    edges = {}
+    for t, face in enumerate(triangles):
+        for i in range(3):
+            edges[int(face[i]), int(face[(i + 1) % 3])] = 3 * t + i
+    return edges
+
+
+def triangle_errors(
+    points: Int64Array, triangles: Iterable[Sequence[int]], colors: Float64Array, image: UInt8Array
+) -> list[float]:
+    """Squared error of each triangle over the pixels it holds, by looking at every pixel.
+
+    `points` are in half pixels; a centre on an edge belongs to the triangle right of or below it.
+    """
+    height, width = image.shape[:2]
+    x, y = 2 * np.arange(width)[None, :] + 1, 2 * np.arange(height)[:, None] + 1
+    errors = []
+    for face in triangles:
+        corners = [(int(points[v, 0]), int(points[v, 1])) for v in face]
+        det = doubled_area(corners[0], corners[1], corners[2])
+        inside = np.ones((height, width), dtype=bool)
+        value = np.zeros(image.shape)
+        for i in range(3):
+            (ax, ay), (bx, by) = corners[(i + 1) % 3], corners[(i + 2) % 3]
+            part = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+            counts = by < ay or (by == ay and bx > ax)
+            inside &= (part > 0) | ((part == 0) & counts)
+            value += (part / det)[:, :, None] * colors[face[i]]
+        errors.append(float(((value - image)[inside] ** 2).sum()))
+    return errors
+
+
+def star_error(
+    points: Int64Array,
+    triangles: Iterable[Sequence[int]],
+    colors: Float64Array,
+    image: UInt8Array,
+    v: int,
+    place: Point,
+    ridge: float,
+) -> float:
+    """Least error of the triangles around a vertex if it stood at a place, over all its colours.
+
+    A ridge holds the colour where next to no pixel tells. Infinite if a triangle were turned over.
+    """
+    star = [face for face in triangles if v in face]
+    moved = points.copy()
+    moved[v] = place
+    for face in star:
+        corners = [(int(moved[u, 0]), int(moved[u, 1])) for u in face]
+        if doubled_area(corners[0], corners[1], corners[2]) <= 0:
+            return float("inf")
+    # The error is a parabola in the colour: three of its points tell all.
+    total = 0.0
+    for z in range(image.shape[2]):
+        values = []
+        for color in (0.0, 1.0, 2.0):
+            tried = colors[:, z : z + 1].copy()
+            tried[v] = color
+            values.append(sum(triangle_errors(moved, star, tried, image[:, :, z : z + 1])))
+        bend = (values[2] - 2 * values[1] + values[0]) / 2
+        slope = values[1] - values[0] - bend
+        total += values[0] - slope * slope / (4 * (bend + ridge))
+    return total
+
+
+def independent_set(
+    triangles: Iterable[Sequence[int]], kept: Sequence[bool], max_triangles: int
+) -> dict[int, set[int]]:
+    """Vertices taken in order unless a neighbour was, with their neighbours."""
+    around: list[set[int]] = [set() for _ in kept]
+    counts = [0] * len(kept)
+    for face in triangles:
+        for v in face:
+            around[v] |= set(face) - {v}
+            counts[v] += 1
+    taken: dict[int, set[int]] = {}
+    for v, neighbours in enumerate(around):
+        if not kept[v] and counts[v] <= max_triangles and not neighbours & set(taken):
+            taken[v] = neighbours
+    return taken
+
+
+def hierarchy(points: Sequence[Point], max_triangles: int) -> list[tuple[int, set[int]]]:
+    """Vertices in the order in which their colours are coded, each with its parents."""
+    far = (max(p[0] for p in points), max(p[1] for p in points))
+    left = list(range(len(points)))
+    levels: list[list[tuple[int, set[int]]]] = []
+    while True:
+        faces = canonical_delaunay([points[v] for v in left])
+        corners = [all(c in (0, f) for c, f in zip(points[v], far, strict=True)) for v in left]
+        taken = independent_set(faces, corners, max_triangles)
+        if not taken:
+            break
+        levels.append([(left[v], {left[u] for u in around}) for v, around in taken.items()])
+        left = [v for i, v in enumerate(left) if i not in taken]
+    last = [(v, {left[i - 1]} if i else set()) for i, v in enumerate(left)]
+    return [entry for level in [last, *levels[::-1]] for entry in level]
+
+
+def thinned(
+    n: int,
+    n_remove: int,
+    cost: Callable[[int, list[int]], float],
+    around: Callable[[int, list[int]], set[int]],
+) -> list[int]:
+    """What is left of n vertices when the one that costs least goes, again and again.
+
+    The cost of a neighbour of what has gone is computed anew when it comes up as the least.
+    """
+    left = list(range(n))
+    costs = {v: cost(v, left) for v in left}
+    outdated: set[int] = set()
+    while n - len(left) < n_remove:
+        v = min(costs, key=lambda v: costs[v])
+        if v in outdated:
+            outdated.remove(v)
+            costs[v] = cost(v, left)
+        else:
+            outdated |= around(v, left)
+            left.remove(v)
+            del costs[v]
+    return left
