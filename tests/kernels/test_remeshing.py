@@ -123,7 +123,7 @@ def test_the_vertex_that_costs_least_goes_first(seed: int) -> None:
         used = np.flatnonzero(surface.leaving >= 0)
         vertices = surface.points[used].astype(np.int32)
         errors = errors_without_each(vertices, surface.colors[used], image)
-        assert thin(surface, image, room, 1, np.inf) == 1
+        assert thin(surface, image, room, np.ones(len(surface.points)), 1, np.inf) == 1
         gone = used[surface.leaving[used] < 0]
         assert total_error(surface, image) == pytest.approx(min(errors.values()))
         assert errors[int(np.flatnonzero(used == gone[0])[0])] == min(errors.values())
@@ -153,7 +153,7 @@ def test_costs_are_computed_anew_when_they_come_up_as_the_least(seed: int) -> No
         return {left[u] for face in faces if left.index(v) in face for u in face} - {v}
 
     expected = twins.thinned(len(vertices), 14, cost, around)
-    assert thin(surface, image, room_for(image), 14, np.inf) == 14
+    assert thin(surface, image, room_for(image), np.ones(len(surface.points)), 14, np.inf) == 14
     assert np.flatnonzero(surface.leaving >= 0).tolist() == expected
     check_surface(surface, 29, 23)
     check_errors(surface, image)
@@ -164,7 +164,7 @@ def test_vertices_that_cost_more_than_allowed_stay() -> None:
     surface = surface_on(image, 12, 1)
     room = room_for(image)
     # As thinning removes them until each of those left costs more.
-    while thin(surface, image, room, 1000, 2000.0):
+    while thin(surface, image, room, np.ones(len(surface.points)), 1000, 2000.0):
         pass
     used = np.flatnonzero(surface.leaving >= 0)
     assert 4 < len(used) < 20
@@ -173,8 +173,8 @@ def test_vertices_that_cost_more_than_allowed_stay() -> None:
     errors = errors_without_each(vertices, surface.colors[used], image)
     least = min(errors.values()) - before
     assert least > 2000.0
-    assert thin(surface, image, room, 1000, 0.99 * least) == 0
-    assert thin(surface, image, room, 1, 1.01 * least) == 1
+    assert thin(surface, image, room, np.ones(len(surface.points)), 1000, 0.99 * least) == 0
+    assert thin(surface, image, room, np.ones(len(surface.points)), 1, 1.01 * least) == 1
 
 
 @pytest.mark.parametrize("name", PICTURES)
@@ -186,7 +186,14 @@ def test_only_the_corners_are_left_in_the_end(name: str) -> None:
     sites = [(0, 0), (2 * width, 0), *centres, (0, 2 * height), (2 * width, 2 * height)]
     vertices = np.array(sites, dtype=np.int32)
     surface = open_surface(picture, vertices, random_colors(len(sites), n_components))
-    while thin(surface, picture, room_for(picture), len(sites) // 3 + 1, np.inf):
+    while thin(
+        surface,
+        picture,
+        room_for(picture),
+        np.ones(len(surface.points)),
+        len(sites) // 3 + 1,
+        np.inf,
+    ):
         check_surface(surface, width, height)
         check_errors(surface, picture)
     left = surface.points[surface.leaving >= 0].tolist()
@@ -498,7 +505,14 @@ def test_a_surface_stays_sound_whatever_is_done_to_it(picture: UInt8Array, seed:
     room = room_for(image)
     for edit in random.integers(4, size=8):
         if edit == 0:
-            thin(surface, image, room, int(random.integers(1, 6)), np.inf)
+            thin(
+                surface,
+                image,
+                room,
+                np.ones(len(surface.points)),
+                int(random.integers(1, 6)),
+                np.inf,
+            )
         elif edit == 1:
             gains, places = proposals(surface, image)
             order = np.argsort(-gains, kind="stable")
@@ -519,6 +533,6 @@ def test_a_ramp_is_held_by_its_corners_alone() -> None:
     room = room_for(image)
     measure(surface, image, room)
     before = surface.errors.sum()
-    assert thin(surface, image, room, 100, np.inf) == 19
+    assert thin(surface, image, room, np.ones(len(surface.points)), 100, np.inf) == 19
     # Rounding to whole levels is all that is left.
     assert surface.errors.sum() < 1.2 * before < 0.2 * image.size

@@ -71,7 +71,10 @@ class SampledDraft:
         colors, equations = fit_colors(self._image, self._vertices, self._triangles, 2)
         # At the solution of A'A c = A'y the squared error is y'y - c'A'y.
         fitted = sum(float(e.moments @ colors[:, z]) for z, e in enumerate(equations))
-        self.error = max(0.0, float(np.square(self._image, dtype=np.float64).sum()) - fitted)
+        squares = np.square(self._image, dtype=np.float64)
+        if self._image.shape[2] == 4:
+            squares[:, :, :3] *= self._image[:, :, 3:] / 255.0
+        self.error = max(0.0, float(squares.sum()) - fitted)
 
     def geometry(self) -> tuple[Int32Array, Int32Array]:
         """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""

@@ -35,8 +35,10 @@ def with_hidden_colors_replaced(image: UInt8Array) -> UInt8Array:
     What is hidden there would show where the mesh's alpha reaches a little further than that of
     the picture. `image` has shape (h, w, c), uint8; only RGBA pictures change.
     """
-    if image.shape[2] != 4 or image[:, :, 3].all() or not image[:, :, 3].any():
+    if image.shape[2] != 4 or image[:, :, 3].all():
         return image
+    if not image[:, :, 3].any():
+        return np.zeros_like(image)
     nearest = distance_transform_edt(
         image[:, :, 3] == 0, return_distances=False, return_indices=True
     )

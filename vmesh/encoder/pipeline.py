@@ -34,8 +34,8 @@ _EFFORTS: Final = {
     5: Effort(density=0.06, max_rounds=16, least_gain=0.06, share_decay=0.85),
     6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
     7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
-    8: Effort(density=0.25, max_rounds=30, least_gain=0.006, share_decay=0.94),
-    9: Effort(density=0.25, max_rounds=32, least_gain=0.002, share_decay=0.95),
+    8: Effort(density=0.25, max_rounds=24, least_gain=0.004, share_decay=0.95),
+    9: Effort(density=0.25, max_rounds=32, least_gain=0.0, share_decay=0.96),
 }
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3

@@ -60,7 +60,11 @@ def quantize(
     for _ in range(_MAX_SWEEPS):
         predict(*hierarchy, levels, shares, means, spreads)
         table = _bit_table(levels[hierarchy.order], means, spreads)
-        residual = _residual(equations, form, levels @ steps)
+        # Luma, grey and alpha are cut off at the largest sample.
+        shown = levels.astype(np.float64)
+        for z in (0, 3)[: 2 if n_components == 4 else 1]:
+            shown[:, z] = np.minimum(shown[:, z], 255.0 / lattice.steps[z])
+        residual = _residual(equations, form, shown @ steps)
         changed = descend(
             hierarchy.order,
             hierarchy.starts,

@@ -17,11 +17,11 @@ from vmesh.arrays import UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.drafts import Draft, Finisher
 from vmesh.kernels.scanline import SUBPIXEL, fill
-from vmesh.mesh import Mesh
+from vmesh.mesh import Mesh, Metadata
 
 # At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
 # factor.
-_PRICE_AT_75: Final = 200.0
+_PRICE_AT_75: Final = 400.0
 _PRICE_FACTOR: Final = 15.0
 
 # A first guess for a size: bytes of the frame, and bits of a vertex.
@@ -59,15 +59,18 @@ def meet_size(
     """
     best: Mesh | None = None
     best_size = 0
+    overhead = _FRAME_BYTES
     for _ in range(_MAX_ATTEMPTS):
         mesh = finisher.finish(draft)
         size = len(dumps(mesh))
+        if best is None and overhead == _FRAME_BYTES:
+            overhead += size - len(dumps(mesh.replaced(metadata=Metadata())))
         if best_size < size <= target_size:
             best, best_size = mesh, size
         if (1 - _SIZE_TOLERANCE) * target_size <= size <= target_size:
             break
         before = draft.n_vertices
-        bits = 8 * max(size - _FRAME_BYTES, 1) / before
+        bits = 8 * max(size - overhead, 1) / before
         aim = (1 - 0.3 * _SIZE_TOLERANCE) * target_size
         change = round(8 * (aim - size) / bits)
         change = min(change, -1) if size > target_size else max(change, 1)
@@ -97,15 +100,15 @@ def meet_psnr(
     for _ in range(_MAX_ATTEMPTS):
         mesh = finisher.finish(draft)
         psnr = measure_psnr(finisher.image, mesh)
-        if target_psnr <= psnr < best_psnr:
+        if psnr >= target_psnr and (best is None or psnr < best_psnr):
             best, best_psnr = mesh, psnr
         if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:
             break
         before = draft.n_vertices
         if earlier is not None and log2(before) != earlier[0]:
-            slope = (psnr - earlier[1]) / (log2(before) - earlier[0])
+            slope = (min(psnr, 99.0) - earlier[1]) / (log2(before) - earlier[0])
             gain = min(max(slope, _LEAST_GAIN), _MOST_GAIN)
-        earlier = log2(before), psnr
+        earlier = log2(before), min(psnr, 99.0)
         aim = target_psnr + 0.5 * _PSNR_TOLERANCE
         doublings = (aim - psnr) / gain
         wanted = round(before * 2.0 ** min(max(doublings, -2.0), 2.0))

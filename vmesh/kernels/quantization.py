@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from vmesh.arrays import Float64Array, Int32Array, Int64Array
 from vmesh.kernels.jit import inner_kernel, kernel
 
@@ -140,6 +142,8 @@ def descend(
                         slope -= 2.0 * steps[z, q] * residual[v, q]
                         curvature += steps[z, q] * steps[z, q] * products[k, q]
             level = levels[v, z]
+            # Luma, grey and alpha are cut off at the largest sample.
+            top = 255.0 / steps[z, z] if z in (0, 3) else np.inf
             own = level - means[place, z]
             own_bits = bits(table, z, spreads[place, z], own)
             best, least = 0, 0.0
@@ -147,7 +151,8 @@ def descend(
                 change = (i // 2 + 1) * (1 if i % 2 == 0 else -1)
                 if not lowest[z] <= level + change <= highest[z]:
                     continue
-                cost = change * slope + change * change * curvature
+                moved = min(level + change, top) - min(level, top)
+                cost = moved * slope + moved * moved * curvature
                 # No change saves more bits than these in practice.
                 if cost > 16.0 * price:
                     continue
@@ -156,8 +161,8 @@ def descend(
                     child = child_places[j]
                     distance = levels[order[child], z] - means[child, z]
                     spread = spreads[child, z]
-                    moved = distance - shares[child_entries[j], z] * change
-                    more += bits(table, z, spread, moved) - bits(table, z, spread, distance)
+                    later = distance - shares[child_entries[j], z] * change
+                    more += bits(table, z, spread, later) - bits(table, z, spread, distance)
                 cost += price * more
                 if cost < least:
                     best, least = change, cost
@@ -165,9 +170,10 @@ def descend(
                 continue
             changed += 1
             levels[v, z] = level + best
+            moved = min(level + best, top) - min(level, top)
             for j in range(child_starts[v], child_starts[v + 1]):
                 means[child_places[j], z] += shares[child_entries[j], z] * best
             for k in range(row_starts[v], row_starts[v + 1]):
                 for q in range(n_components):
-                    residual[columns[k], q] -= products[k, q] * steps[z, q] * best
+                    residual[columns[k], q] -= products[k, q] * steps[z, q] * moved
     return changed

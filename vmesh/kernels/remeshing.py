@@ -481,7 +481,14 @@ def sift(heap: Int32Array, place: Int32Array, costs: Float64Array, size: int, at
 
 
 @kernel
-def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cost: float) -> int:
+def thin(
+    surface: Surface,
+    image: UInt8Array,
+    room: Room,
+    factors: Float64Array,
+    n_remove: int,
+    max_cost: float,
+) -> int:
     """Remove the vertices that cost least, one by one; how many went.
 
     A heap yields the cheapest one. The costs of its neighbours are out of date when it has gone;
@@ -494,6 +501,8 @@ def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cos
     image : ndarray
         Shape (h, w, c), uint8.
     room : Room
+    factors : ndarray
+        Shape (n,), float64: what the cost of each vertex is multiplied by.
     n_remove : int
         Number to remove at most.
     max_cost : float
@@ -507,20 +516,20 @@ def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cos
     left = 0
     for v in range(n_points):
         if surface.leaving[v] >= 0:
-            costs[v] = removal_cost(surface, image, room, v)
+            costs[v] = factors[v] * removal_cost(surface, image, room, v)
             heap[left] = v
             place[v] = left
             left += 1
-    for at in range(left // 2, -1, -1):
-        sift(heap, place, costs, left, at)
+    for at in range(left):
+        sift(heap, place, costs, at + 1, at)
     removed = 0
     while removed < n_remove and left > 0:
         v = heap[0]
-        if costs[v] == np.inf or costs[v] > max_cost:
-            break
         if outdated[v]:
             outdated[v] = False
-            costs[v] = removal_cost(surface, image, room, v)
+            costs[v] = factors[v] * removal_cost(surface, image, room, v)
+        elif costs[v] == np.inf or costs[v] > max_cost:
+            break
         else:
             for i in range(remove(surface, image, room, v)):
                 outdated[room.ring[i]] = True
@@ -536,6 +545,35 @@ def thin(surface: Surface, image: UInt8Array, room: Room, n_remove: int, max_cos
 
 
 @inner_kernel
+def worst_pixel(
+    surface: Surface, image: UInt8Array, room: Room, a: int, b: int, c: int
+) -> tuple[int, int]:
+    """Centre of the pixel of a triangle with the largest error; its first corner if it has none."""
+    points, colors, rows = surface.points, surface.colors, room.rows
+    ax, ay = points[a, 0], points[a, 1]
+    bx, by = points[b, 0] - ax, points[b, 1] - ay
+    cx, cy = points[c, 0] - ax, points[c, 1] - ay
+    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.shape[1], rows)
+    inverse = 1.0 / float(bx * cy - cx * by)
+    worst, worst_x, worst_y = 0.0, ax, ay
+    for row in range(first, last):
+        for column in range(rows[row, 0], rows[row, 1]):
+            dx, dy = 2 * column + 1 - ax, 2 * row + 1 - ay
+            weight_b, weight_c = (dx * cy - dy * cx) * inverse, (dy * bx - dx * by) * inverse
+            # A vertex has to lie inside.
+            if min(weight_b, weight_c, 1.0 - weight_b - weight_c) < 1e-9:
+                continue
+            error = 0.0
+            for z in range(image.shape[2]):
+                value = colors[a, z] + weight_b * (colors[b, z] - colors[a, z])
+                value += weight_c * (colors[c, z] - colors[a, z])
+                error += (value - image[row, column, z]) ** 2
+            if error >= worst:
+                worst, worst_x, worst_y = error, 2 * column + 1, 2 * row + 1
+    return worst_x, worst_y
+
+
+@inner_kernel
 def best_insertion(
     surface: Surface, image: UInt8Array, room: Room, t: int
 ) -> tuple[float, int, int]:
@@ -543,16 +581,19 @@ def best_insertion(
     points, ring = surface.points, room.ring
     for i in range(4):
         ring[i] = surface.origin[3 * t + i % 3]
-    best, best_x, best_y = 0.0, 0, 0
-    for i in range(4):
+    best, best_x, best_y = -np.inf, 0, 0
+    for i in range(5):
         x, y = 0, 0
-        for k in range(3):
-            # Weights in twentieths: 7, 6, 7 in the middle; 2 for the corner across from a side.
-            share = (7 if k != 1 else 6) if i == 3 else (2 if k == i else 9)
-            x += share * points[ring[k], 0]
-            y += share * points[ring[k], 1]
-        # The pixel's centre.
-        x, y = x // 40 * 2 + 1, y // 40 * 2 + 1
+        if i == 4:
+            x, y = worst_pixel(surface, image, room, ring[0], ring[1], ring[2])
+        else:
+            for k in range(3):
+                # Weights in twentieths: 7, 6, 7 in the middle; 2 for the corner across from a side.
+                share = (7 if k != 1 else 6) if i == 3 else (2 if k == i else 9)
+                x += share * points[ring[k], 0]
+                y += share * points[ring[k], 1]
+            # The pixel's centre.
+            x, y = x // 40 * 2 + 1, y // 40 * 2 + 1
         gain = surface.errors[t] - error_at(surface, image, room, x, y, 3, surface.errors[t] - best)
         if gain > best:
             best, best_x, best_y = gain, x, y
@@ -583,8 +624,8 @@ def propose_insertions(
 ) -> None:
     """What a new vertex would gain in each triangle, shape (m,), and where, shape (m, 2)."""
     for t in range(surface.errors.shape[0]):
-        gains[t] = 0.0
-        if surface.errors[t] > 0.0:
+        gains[t] = -np.inf
+        if surface.origin[3 * t] >= 0:
             gains[t], places[t, 0], places[t, 1] = best_insertion(surface, image, room, t)
 
 
