@@ -28,9 +28,10 @@ _PRICE_FACTOR: Final = 15.0
 _FRAME_BYTES: Final = 28
 _VERTEX_BITS: Final = 18.0
 
-_MAX_ATTEMPTS: Final = 20
+_MAX_ATTEMPTS: Final = 30
 _SIZE_TOLERANCE: Final = 0.02
 _PSNR_TOLERANCE: Final = 0.1
+_STEP_DECAY: Final = 0.8
 # Decibels that twice as many vertices gain: expected, and the least and the most believed.
 _GAIN: Final = 2.4
 _LEAST_GAIN: Final = 1.5
@@ -97,7 +98,7 @@ def meet_psnr(
     best_psnr = np.inf
     gain = _GAIN
     earlier: tuple[float, float] | None = None
-    for _ in range(_MAX_ATTEMPTS):
+    for attempt in range(_MAX_ATTEMPTS):
         mesh = finisher.finish(draft)
         psnr = measure_psnr(finisher.image, mesh)
         if psnr >= target_psnr and (best is None or psnr < best_psnr):
@@ -111,7 +112,9 @@ def meet_psnr(
         earlier = log2(before), min(psnr, 99.0)
         aim = target_psnr + 0.5 * _PSNR_TOLERANCE
         doublings = (aim - psnr) / gain
-        wanted = round(before * 2.0 ** min(max(doublings, -2.0), 2.0))
+        # Large changes shake the mesh: they become smaller from one attempt to the next.
+        most = 2.0 * _STEP_DECAY**attempt
+        wanted = round(before * 2.0 ** min(max(doublings, -most), most))
         wanted = min(wanted, before - 1) if psnr > target_psnr else max(wanted, before + 1)
         draft.resize(max(4, wanted))
         report()

@@ -32,10 +32,11 @@ _FINE_SHARE: Final = 0.85  # where the error is what stops the thinning
 # Shares of the vertices that are exchanged in a round: the first, and the least.
 _FIRST_SHARE: Final = 0.2
 _LEAST_SHARE: Final = 0.03
-# What chance may multiply a cost by, less 1: without it the same vertices come and go. On kodim05 and
-# kodim23 it gives 23.10 and 34.81 dB with 0, 23.26 and 34.87 with 4 (effort 7, 4,000 vertices), and
-# 23.47 and 35.10 with 4, 23.53 and 35.14 with 8 (effort 9).
+# What chance may multiply a cost by, less 1: without it the same vertices come and go. On kodim05
+# and kodim23 it gives 23.10 and 34.81 dB with 0, 23.26 and 34.87 with 4 (effort 7, 4,000
+# vertices); 23.47 and 35.10 with 4, 23.53 and 35.14 with 8 (effort 9).
 _CHANCE: Final = 8.0
+_SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
 _PATIENCE: Final = 3  # rounds that are judged together
 # Bits that an edge costs which is not Delaunay.
 _FLIP_BITS: Final = 3.5
@@ -160,7 +161,11 @@ class Remesher:
 
     def resize(self, n_vertices: int) -> None:
         """Change the number of vertices, as far as there is anything to gain from more."""
-        self.refine(n_vertices, _nothing)
+        if abs(n_vertices - self.n_vertices) > _SMALL_CHANGE * self.n_vertices:
+            self.refine(n_vertices, _nothing)
+        else:
+            self._exchange(n_vertices, 0.0)
+            self._settle()
 
     def _exchange(self, n_vertices: int, share: float) -> None:
         """Remove the least useful vertices and insert others where they gain most."""
