@@ -184,6 +184,13 @@ def test_info_lists_the_parts_of_a_file(file: Path) -> None:
     assert str(mesh.n_vertices) in text
 
 
+def test_info_tells_how_the_triangles_are_coded(file: Path, tmp_path: Path) -> None:
+    assert json.loads(succeed("info", file, "--json"))["connectivity"] == "flipped"
+    implied = tmp_path / "implied.vmesh"
+    succeed("encode", CHELSEA, implied, "--method", "blue-noise", "--vertices", "200")
+    assert json.loads(succeed("info", implied, "--json"))["connectivity"] == "implied"
+
+
 def test_info_decodes_the_mesh_if_asked_to(file: Path) -> None:
     figures = json.loads(succeed("info", file, "--parts", "--json"))
     mesh = vmesh.load(file)

@@ -11,6 +11,11 @@ from vmesh.cli.streams import read_input
 from vmesh.codec import layout
 from vmesh.errors import FormatError, LimitError
 
+_CONNECTIVITY_NAMES: Final = {
+    layout.IMPLIED_TRIANGLES: "implied",
+    layout.LISTED_TRIANGLES: "listed",
+    layout.FLIPPED_TRIANGLES: "flipped",
+}
 _CHUNK_NAMES: Final = {
     layout.MESH_TAG: "mesh",
     **{tag: name for name, tag in layout.METADATA_TAGS.items()},
@@ -53,9 +58,7 @@ def describe(data: bytes, by_parts: bool) -> dict[str, Any]:
         "color_steps": list(header.steps),
         "subdivision": header.subdivision,
         "vertices": header.n_vertices,
-        "connectivity": (
-            "implied" if header.connectivity == layout.IMPLIED_TRIANGLES else "listed"
-        ),
+        "connectivity": _CONNECTIVITY_NAMES[header.connectivity],
         "bytes": len(data),
         "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
     }
