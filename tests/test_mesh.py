@@ -12,7 +12,8 @@ from tests.strategies import meshes
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.pipeline import encode
 from vmesh.kernels.delaunay import delaunay
-from vmesh.mesh import MAX_LATTICE_SIDE, MAX_SIDE, Mesh, Metadata
+from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE
+from vmesh.mesh import Mesh, Metadata
 
 FAN = [[0, 1, 4], [1, 3, 4], [3, 2, 4], [2, 0, 4]]
 

@@ -27,6 +27,7 @@ from measurement import (
     judge,
     load_photographs,
     markdown_option,
+    measure_process,
     time_actions,
     version_of,
 )
@@ -65,13 +66,6 @@ HELP: Final = "`vmesh --help`"
 INFO: Final = "`vmesh info`"
 
 VMESH: Final = (sys.executable, "-m", "vmesh")
-# In a small process of its own: the peak that a process is charged with starts at its parent's.
-MEASURE_CHILD: Final = """
-import resource, subprocess, sys
-subprocess.run(sys.argv[1:], check=True)
-peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-print(peak if sys.platform == "darwin" else 1024 * peak)
-"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,8 +321,8 @@ class CommandLine:
     def encode_measured(self, picture: Path) -> tuple[dict[str, Any], int]:
         """Figures of an encoding and the most memory that its process held, in bytes."""
         command = (*VMESH, "encode", str(picture), str(self.mesh), "--json")
-        figures, peak = self.run(sys.executable, "-c", MEASURE_CHILD, *command).splitlines()
-        return json.loads(figures), int(peak)
+        figures, peak = measure_process(*command, environment=self._environment)
+        return json.loads(figures), peak
 
 
 def report_starts(printer: Printer, bench: CommandLine) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from importlib import import_module
 from pathlib import Path
@@ -163,34 +163,38 @@ def mean_cell(figures: Figures, codec: str, digits: int, n_pictures: int) -> str
 
 def seconds_table(rows: list[Row]) -> Table:
     """Mean seconds of encoding and decoding: a row for each codec, a column for each point."""
-    points = points_of(rows)
-    lines = []
-    for codec in codecs_of(rows):
-        cells = []
-        for point in points:
-            own = [row for row in rows if (row.codec, row.point) == (codec, point)]
-            cells.append(
-                f"{mean(row.encode_seconds for row in own):.2f} / "
-                f"{1e3 * mean(row.decode_seconds for row in own):.0f}"
-                if own
-                else "-"
-            )
-        lines.append((codec, *cells))
     title = "Seconds of one encoding / milliseconds of one decoding, means (searches not counted)"
-    return Table(title, ("codec", *points), lines)
+    return table_of_points(rows, title, seconds_cell)
+
+
+def seconds_cell(rows: list[Row]) -> str:
+    """Mean seconds of encoding and milliseconds of decoding of a codec at a point."""
+    encoding = mean(row.encode_seconds for row in rows)
+    decoding = mean(row.decode_seconds for row in rows)
+    return f"{encoding:.2f} / {1e3 * decoding:.0f}"
 
 
 def shares_table(rows: list[Row]) -> Table:
     """Mean share of the budget that was used: a row for each codec, a column for each point."""
+    return table_of_points(rows, "Bytes used of those allowed, means", share_cell)
+
+
+def share_cell(rows: list[Row]) -> str:
+    """Mean share of the budget that a codec used at a point."""
+    return f"{mean(row.n_bytes / row.budget for row in rows):.1%}"
+
+
+def table_of_points(rows: list[Row], title: str, cell: Callable[[list[Row]], str]) -> Table:
+    """A row for each codec, a column for each point, a dash where the codec did not reach it."""
     points = points_of(rows)
     lines = []
     for codec in codecs_of(rows):
         cells = []
         for point in points:
             own = [row for row in rows if (row.codec, row.point) == (codec, point)]
-            cells.append(f"{mean(row.n_bytes / row.budget for row in own):.1%}" if own else "-")
+            cells.append(cell(own) if own else "-")
         lines.append((codec, *cells))
-    return Table("Bytes used of those allowed, means", ("codec", *points), lines)
+    return Table(title, ("codec", *points), lines)
 
 
 def pictures_table(rows: list[Row], point: str) -> Table:

@@ -145,10 +145,12 @@ def time_actions(actions: Mapping[str, Callable[[], object]], runs: int) -> dict
     return {name: Timing(median(own), min(own), max(own)) for name, own in seconds.items()}
 
 
-def measure_process(*command: str) -> tuple[str, int]:
+def measure_process(*command: str, environment: Mapping[str, str] | None = None) -> tuple[str, int]:
     """What a process prints, and the most memory that it held, in bytes."""
     measuring = (sys.executable, "-c", _MEASURE_CHILD, *command)
-    printed = subprocess.run(measuring, check=True, stdout=subprocess.PIPE, text=True).stdout
+    printed = subprocess.run(
+        measuring, check=True, env=environment, stdout=subprocess.PIPE, text=True
+    ).stdout
     own, _, peak = printed.rstrip().rpartition("\n")
     return own, int(peak)
 

@@ -21,9 +21,7 @@ import numpy.typing as npt
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
-from vmesh.limits import MAX_LATTICE_SIDE as MAX_LATTICE_SIDE
-from vmesh.limits import MAX_SIDE as MAX_SIDE
-from vmesh.limits import MAX_SUBDIVISION as MAX_SUBDIVISION
+from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 
 _LARGEST_ENTRY: Final = 1e9
 
@@ -408,7 +406,7 @@ def sorted_triangles(triangles: npt.NDArray[np.integer]) -> Int32Array:
     return result
 
 
-def raster_keys(vertices: Int32Array) -> Int64Array:
+def raster_keys(vertices: Int32Array | Int64Array) -> Int64Array:
     """Integers that sort positions of shape (n, 2) in raster order, one for each; (n,), int64."""
     wide = vertices.astype(np.int64)
     keys: Int64Array = (wide[:, 1] << 32) | wide[:, 0]

@@ -34,8 +34,8 @@ from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError, LimitError, VmeshError
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay
-from vmesh.limits import Limits
-from vmesh.mesh import MAX_SIDE, Mesh
+from vmesh.limits import MAX_SIDE, Limits
+from vmesh.mesh import Mesh
 
 
 def refusal(data: bytes) -> str:

@@ -30,7 +30,8 @@ from vmesh.encoder.colors import sample_colors
 from vmesh.encoder.image import as_image, visible_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.settings import MAX_EFFORT, Settings
-from vmesh.mesh import MAX_SIDE, Mesh, Metadata
+from vmesh.limits import MAX_SIDE
+from vmesh.mesh import Mesh, Metadata
 
 EFFORTS = range(1, MAX_EFFORT + 1)
 

@@ -18,7 +18,8 @@ from vmesh.kernels.delaunay import (
     sweep,
 )
 from vmesh.kernels.half_edges import find_twins
-from vmesh.mesh import MAX_LATTICE_SIDE, sorted_triangles
+from vmesh.limits import MAX_LATTICE_SIDE
+from vmesh.mesh import sorted_triangles
 
 
 def random_grid(random: np.random.Generator, columns: int, rows: int, share: float) -> Int32Array:

@@ -37,7 +37,8 @@ from vmesh.color_lattice import MAX_STEP, ColorLattice
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.scanline import SUBPIXEL, cover, fill
-from vmesh.mesh import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION, Mesh, Metadata
+from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
+from vmesh.mesh import Mesh, Metadata
 
 _ROOT: Final = Path(__file__).parents[2]
 _TEXT: Final = (_ROOT / "spec" / "vmesh.md").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from vmesh.cli.options import limit_options, quiet_option, take_limits
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of, write_mesh
-from vmesh.mesh import MAX_SIDE
+from vmesh.limits import MAX_SIDE
 
 
 class MatrixType(click.ParamType[tuple[float, ...]]):

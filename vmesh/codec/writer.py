@@ -53,6 +53,11 @@ def _find_connectivity(mesh: Mesh) -> tuple[int, Flips | None]:
     return layout.FLIPPED_TRIANGLES, flips
 
 
+def metadata_size(metadata: Metadata) -> int:
+    """Bytes that metadata take in a file."""
+    return sum(len(layout.pack_chunk(*chunk)) for chunk in _metadata_contents(metadata))
+
+
 def _metadata_contents(metadata: Metadata) -> Iterator[tuple[bytes, bytes]]:
     """Tag and content of the chunks before the mesh."""
     for name, tag in layout.METADATA_TAGS.items():

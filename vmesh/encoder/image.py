@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
 from vmesh.arrays import UInt8Array
-from vmesh.mesh import MAX_SIDE
+from vmesh.limits import MAX_SIDE
 
 
 def as_image(array: npt.ArrayLike) -> UInt8Array:

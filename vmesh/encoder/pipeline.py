@@ -12,7 +12,7 @@ import numpy.typing as npt
 from vmesh.arrays import UInt8Array, UInt16Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.drafts import SUBDIVISION, Draft, Finisher, SampledDraft, price_of
+from vmesh.encoder.drafts import SUBDIVISION, UNIT, Draft, Finisher, SampledDraft, price_of
 from vmesh.encoder.image import as_image, visible_planes, with_hidden_colors_replaced
 from vmesh.encoder.rate_control import guess_vertices, meet_psnr, meet_size, price_of_quality
 from vmesh.encoder.remeshing import Effort, Remesher
@@ -27,6 +27,7 @@ Progress = Callable[[str], None]
 
 STAGES: Final = ("sampling", "thinning", "refinement", "colors", "rate control")
 
+# What each effort from 2 on buys.
 _EFFORTS: Final = {
     2: Effort(density=0.04, max_rounds=1, least_gain=0.0, share_decay=1.0),
     3: Effort(density=0.05, max_rounds=2, least_gain=0.0, share_decay=0.7),
@@ -144,9 +145,9 @@ def _encode_blue_noise(
     triangles = delaunay(vertices)
     report("colors")
     if settings.colors == "fitted":
-        colors, _ = fit_colors(image, vertices, triangles, 1 << SUBDIVISION)
+        colors, _ = fit_colors(image, vertices, triangles, UNIT)
     else:
-        colors = sample_colors(image, vertices, 1 << SUBDIVISION)
+        colors = sample_colors(image, vertices, UNIT)
     lattice = ColorLattice.uniform(n_components, settings.color_step or _BLUE_NOISE_STEP)
     levels = lattice.levels_from_colors(np.rint(colors))
     return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, metadata)

@@ -14,10 +14,10 @@ from typing import Final
 import numpy as np
 
 from vmesh.arrays import UInt8Array
-from vmesh.codec.writer import dumps
+from vmesh.codec.writer import dumps, metadata_size
 from vmesh.encoder.drafts import Draft, Finisher
 from vmesh.kernels.scanline import SUBPIXEL, fill
-from vmesh.mesh import Mesh, Metadata
+from vmesh.mesh import Mesh
 
 # At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
 # factor.
@@ -60,12 +60,10 @@ def meet_size(
     """
     best: Mesh | None = None
     best_size = 0
-    overhead = _FRAME_BYTES
+    overhead = _FRAME_BYTES + metadata_size(finisher.metadata)
     for _ in range(_MAX_ATTEMPTS):
         mesh = finisher.finish(draft)
         size = len(dumps(mesh))
-        if best is None and overhead == _FRAME_BYTES:
-            overhead += size - len(dumps(mesh.replaced(metadata=Metadata())))
         if best_size < size <= target_size:
             best, best_size = mesh, size
         if (1 - _SIZE_TOLERANCE) * target_size <= size <= target_size:

@@ -10,7 +10,7 @@ import numpy as np
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.encoder.colors import fit_components, sample_colors
-from vmesh.encoder.drafts import price_of
+from vmesh.encoder.drafts import UNIT, price_of
 from vmesh.encoder.image import visible_planes
 from vmesh.kernels.delaunay import delaunay, sort_triangles
 from vmesh.kernels.half_edges import find_twins
@@ -24,8 +24,8 @@ from vmesh.kernels.remeshing import (
     relocate,
     thin,
 )
+from vmesh.mesh import raster_keys
 
-_UNIT: Final = 2  # lattice units in a pixel
 # Colours are fitted anew whenever this share of the vertices is left.
 _REFIT_SHARE: Final = 0.6
 _FINE_SHARE: Final = 0.85  # where the error is what stops the thinning
@@ -87,7 +87,7 @@ class Remesher:
         self._picture = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
         self._weights = np.ones(image.shape[:2])
         self._room = make_room(image.shape[0], image.shape[2])
-        colors = sample_colors(self._picture, vertices, _UNIT)
+        colors = sample_colors(self._picture, vertices, UNIT)
         self._surface = _open_surface(vertices.astype(np.int64), colors, delaunay(vertices), 0)
         self.n_vertices = len(vertices)
         self.error = 0.0
@@ -162,7 +162,7 @@ class Remesher:
     def resize(self, n_vertices: int) -> None:
         """Change the number of vertices, as far as there is anything to gain from more."""
         if abs(n_vertices - self.n_vertices) > _SMALL_CHANGE * self.n_vertices:
-            self.refine(n_vertices, _nothing)
+            self.refine(n_vertices, lambda: None)
         else:
             self._exchange(n_vertices, 0.0)
             self._settle()
@@ -190,7 +190,7 @@ class Remesher:
     def geometry(self) -> tuple[Int32Array, Int32Array]:
         """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""
         points, triangles = self._surface.points, self._surface.origin.reshape(-1, 3)
-        order = np.lexsort((points[:, 0], points[:, 1]))
+        order = np.argsort(raster_keys(points))
         rank = np.empty(len(order), dtype=np.int32)
         rank[order] = np.arange(len(order))
         return points[order].astype(np.int32), sort_triangles(rank[triangles], len(order))
@@ -227,7 +227,7 @@ class Remesher:
             self._weights,
             surface.points.astype(np.int32),
             triangles,
-            _UNIT,
+            UNIT,
             surface.colors,
         )
         self.error = measure(surface, self._picture, self._room)
@@ -236,7 +236,8 @@ class Remesher:
         """Drop what is not in use, and make room for some more vertices."""
         surface = self._surface
         triangles = surface.origin.reshape(-1, 3)
-        triangles = triangles[triangles[:, 0] >= 0]
+        alive = triangles[:, 0] >= 0
+        triangles = triangles[alive]
         used = np.flatnonzero(surface.leaving >= 0)
         rank = np.empty(len(surface.points), dtype=np.int32)
         rank[used] = np.arange(len(used))
@@ -244,7 +245,7 @@ class Remesher:
             surface.points[used], surface.colors[used], rank[triangles], n_spare
         )
         self._surface.restless[: len(used)] = surface.restless[used]
-        measure(self._surface, self._picture, self._room)
+        self._surface.errors[: len(triangles)] = surface.errors[alive]
 
 
 def _open_surface(
@@ -268,7 +269,3 @@ def _open_surface(
         errors=np.zeros(n_triangles + 2 * n_spare),
         restless=np.ones(n_points + n_spare, dtype=np.bool_),
     )
-
-
-def _nothing() -> None:
-    """Report nothing."""

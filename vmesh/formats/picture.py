@@ -14,7 +14,8 @@ from vmesh.arrays import UInt8Array
 from vmesh.errors import ImageError
 from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
-from vmesh.mesh import MAX_SIDE, Metadata
+from vmesh.limits import MAX_SIDE
+from vmesh.mesh import Metadata
 
 # Well-kept decoders of what people have; not those that run other programs, as for PostScript.
 _FORMATS: Final = (

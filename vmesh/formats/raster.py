@@ -12,7 +12,8 @@ from PIL import Image
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
 from vmesh.kernels.scanline import SUBPIXEL, fill, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
-from vmesh.mesh import MAX_SIDE, Matrix, Mesh, Metadata, Placement
+from vmesh.limits import MAX_SIDE
+from vmesh.mesh import Matrix, Mesh, Metadata, Placement
 
 MAX_SUPERSAMPLE: Final = 16
 

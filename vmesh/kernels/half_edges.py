@@ -8,16 +8,12 @@ from __future__ import annotations
 import numpy as np
 
 from vmesh.arrays import BoolArray, Int32Array, Int64Array
-from vmesh.kernels.jit import kernel
+from vmesh.kernels.jit import inner_kernel, kernel
 
 
-@kernel
-def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
-    """Half-edge across each half-edge, shape (3 m,), int32; -1 on the border.
-
-    `triangles` has shape (m, 3), int32, and no two of them on the same side of an edge.
-    """
-    origin = triangles.reshape(-1)
+@inner_kernel
+def leave(origin: Int32Array, n_vertices: int) -> tuple[Int64Array, Int32Array]:
+    """Half-edges in the order of the vertices that they leave, and where those of each start."""
     starts = np.zeros(n_vertices + 1, np.int64)
     for e in range(origin.shape[0]):
         starts[origin[e] + 1] += 1
@@ -28,6 +24,17 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
     for e in range(origin.shape[0]):
         leaving[filled[origin[e]]] = e
         filled[origin[e]] += 1
+    return starts, leaving
+
+
+@kernel
+def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
+    """Half-edge across each half-edge, shape (3 m,), int32; -1 on the border.
+
+    `triangles` has shape (m, 3), int32, and no two of them on the same side of an edge.
+    """
+    origin = triangles.reshape(-1)
+    starts, leaving = leave(origin, n_vertices)
     twin = np.full(origin.shape[0], -1, np.int32)
     # Those that leave a vertex, by their ends; what is left of other vertices starts elsewhere.
     # So a vertex of very many triangles costs no more than its share.
@@ -70,16 +77,7 @@ def independent_set(
     """
     n_vertices = kept.shape[0]
     corners = triangles.reshape(-1)
-    first = np.zeros(n_vertices + 1, np.int64)
-    for e in range(corners.shape[0]):
-        first[corners[e] + 1] += 1
-    for v in range(n_vertices):
-        first[v + 1] += first[v]
-    filled = first.copy()
-    leaving = np.empty(corners.shape[0], np.int32)
-    for e in range(corners.shape[0]):
-        leaving[filled[corners[e]]] = e
-        filled[corners[e]] += 1
+    first, leaving = leave(corners, n_vertices)
     blocked = kept.copy()
     taken = np.empty(n_vertices, np.int32)
     starts = np.zeros(n_vertices + 1, np.int64)

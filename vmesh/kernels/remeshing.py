@@ -145,6 +145,29 @@ def inside_circle(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
 
 
 @inner_kernel
+def follow(
+    x0: int,
+    y0: int,
+    x1: int,
+    y1: int,
+    first: int,
+    last: int,
+    side: int,
+    width: int,
+    rows: Int64Array,
+) -> None:
+    """Write the column at which each of some rows meets an edge, from its upper end (x0, y0)."""
+    if first >= last:
+        return
+    slope = (x1 - x0) / (y1 - y0)
+    # Half the horizontal position less a half is a column.
+    column = 0.5 * (x0 + slope * (2 * first + 1 - y0)) - 0.5 - _BIAS
+    for y in range(first, last):
+        rows[y, side] = min(max(math.ceil(column), 0), width)
+        column += slope
+
+
+@inner_kernel
 def spans(
     x0: int, y0: int, x1: int, y1: int, x2: int, y2: int, width: int, rows: Int64Array
 ) -> tuple[int, int]:
@@ -164,25 +187,9 @@ def spans(
         return 0, 0
     middle = min(max(y1 >> 1, first), last)
     long_side = 0 if (x1 - x0) * (y2 - y0) > (y1 - y0) * (x2 - x0) else 1
-    # Half the horizontal position less a half is a column; each edge is a line in it.
-    slope = (x2 - x0) / (y2 - y0)
-    column = 0.5 * (x0 + slope * (2 * first + 1 - y0)) - 0.5 - _BIAS
-    for y in range(first, last):
-        rows[y, long_side] = min(max(math.ceil(column), 0), width)
-        column += slope
-    short_side = 1 - long_side
-    if first < middle:
-        slope = (x1 - x0) / (y1 - y0)
-        column = 0.5 * (x0 + slope * (2 * first + 1 - y0)) - 0.5 - _BIAS
-        for y in range(first, middle):
-            rows[y, short_side] = min(max(math.ceil(column), 0), width)
-            column += slope
-    if middle < last:
-        slope = (x2 - x1) / (y2 - y1)
-        column = 0.5 * (x1 + slope * (2 * middle + 1 - y1)) - 0.5 - _BIAS
-        for y in range(middle, last):
-            rows[y, short_side] = min(max(math.ceil(column), 0), width)
-            column += slope
+    follow(x0, y0, x2, y2, first, last, long_side, width, rows)
+    follow(x0, y0, x1, y1, first, middle, 1 - long_side, width, rows)
+    follow(x1, y1, x2, y2, middle, last, 1 - long_side, width, rows)
     return first, last
 
 
