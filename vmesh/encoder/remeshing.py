@@ -173,11 +173,7 @@ class Remesher:
         n_remove = max(0, self.n_vertices - n_vertices + n_exchanged)
         self._remove(n_remove, np.inf, _CHANCE)
         self._compact(max(0, n_vertices - self.n_vertices))
-        for least_gain in (0.0, -np.inf):
-            for _ in range(_INSERTION_PASSES):
-                wanted = n_vertices - self.n_vertices
-                if wanted <= 0 or self._insert(wanted, least_gain) == 0:
-                    break
+        self._insert(n_vertices - self.n_vertices)
         self._compact(0)
 
     def _settle(self) -> None:
@@ -205,17 +201,25 @@ class Remesher:
         self.n_vertices -= removed
         return removed
 
-    def _insert(self, n_insert: int, least_gain: float) -> int:
-        """Insert vertices where they gain most, no two of them side by side; how many."""
-        n_triangles = len(self._surface.errors)
-        gains = np.zeros(n_triangles)
-        places = np.zeros((n_triangles, 2), dtype=np.int64)
-        propose_insertions(self._surface, self._picture, self._room, gains, places)
-        order = np.argsort(-gains, kind="stable")
-        useful = order[gains[order] > least_gain]
-        inserted = insert(self._surface, self._picture, self._room, useful, places, n_insert)
-        self.n_vertices += inserted
-        return inserted
+    def _insert(self, n_insert: int) -> None:
+        """Insert vertices where they gain most; where they gain nothing only if they have to be."""
+        gains = np.full(len(self._surface.errors), np.nan)
+        places = np.zeros((len(gains), 2), dtype=np.int64)
+        for least_gain in (0.0, -np.inf):
+            # No two go side by side at once: the next call sees what this one changed.
+            for _ in range(_INSERTION_PASSES):
+                if n_insert <= 0:
+                    break
+                propose_insertions(self._surface, self._picture, self._room, gains, places)
+                order = np.argsort(-gains, kind="stable")
+                useful = order[gains[order] > least_gain]
+                inserted = insert(
+                    self._surface, self._picture, self._room, useful, gains, places, n_insert
+                )
+                if inserted == 0:
+                    break
+                n_insert -= inserted
+                self.n_vertices += inserted
 
     def _refit(self) -> None:
         """Fit all colours anew and measure what error is left."""

@@ -629,10 +629,23 @@ def split(
 def propose_insertions(
     surface: Surface, image: UInt8Array, room: Room, gains: Float64Array, places: Int64Array
 ) -> None:
-    """What a new vertex would gain in each triangle, shape (m,), and where, shape (m, 2)."""
+    """What a new vertex would gain in each triangle, and where, if that is not known yet.
+
+    Parameters
+    ----------
+    surface : Surface
+    image : ndarray
+        Shape (h, w, c), uint8.
+    room : Room
+    gains : ndarray
+        Shape (m,), float64: NaN where it is not known; minus infinity for what is not in use.
+    places : ndarray
+        Shape (m, 2), int64.
+    """
     for t in range(surface.errors.shape[0]):
-        gains[t] = -np.inf
-        if surface.origin[3 * t] >= 0:
+        if surface.origin[3 * t] < 0:
+            gains[t] = -np.inf
+        elif math.isnan(gains[t]):
             gains[t], places[t, 0], places[t, 1] = best_insertion(surface, image, room, t)
 
 
@@ -642,6 +655,7 @@ def insert(
     image: UInt8Array,
     room: Room,
     order: Int64Array,
+    gains: Float64Array,
     places: Int64Array,
     n_insert: int,
 ) -> int:
@@ -657,6 +671,8 @@ def insert(
     room : Room
     order : ndarray
         Shape (k,), int64: triangles in use, the best first.
+    gains : ndarray
+        Shape (m,), float64: set to NaN for triangles that change.
     places : ndarray
         Shape (m, 2), int64: where in each triangle.
     n_insert : int
@@ -691,6 +707,7 @@ def insert(
             surface.colors[v, z] = surface.colors[room.ring[0], z]
         take_color(surface, room, v)
         split(surface, image, room, t, v, free_triangles[0], free_triangles[1])
+        gains[t] = gains[free_triangles[0]] = gains[free_triangles[1]] = np.nan
         inserted += 1
     return inserted
 
