@@ -21,7 +21,13 @@ if TYPE_CHECKING:
     from vmesh.color_lattice import ColorLattice
     from vmesh.encoder.pipeline import encode
     from vmesh.encoder.settings import Settings
-    from vmesh.errors import FormatError, ImageError, LimitError, VmeshError
+    from vmesh.errors import (
+        FormatError,
+        ImageError,
+        LimitError,
+        PartialFileWarning,
+        VmeshError,
+    )
     from vmesh.formats.raster import render
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
@@ -37,6 +43,7 @@ __all__ = [
     "Limits",
     "Mesh",
     "Metadata",
+    "PartialFileWarning",
     "Settings",
     "VmeshError",
     "dump",
@@ -56,6 +63,7 @@ _HOMES: Final = {
     "Limits": "vmesh.limits",
     "Mesh": "vmesh.mesh",
     "Metadata": "vmesh.mesh",
+    "PartialFileWarning": "vmesh.errors",
     "Settings": "vmesh.encoder.settings",
     "VmeshError": "vmesh.errors",
     "dump": "vmesh.codec.stream",

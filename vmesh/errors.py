@@ -8,7 +8,8 @@
     │   ├── LimitError           conforming, but more than the caller allows
     │   └── ImageError           the file is not a photograph that can be read
     ├── ValueError, TypeError    a wrong argument
-    └── OSError                  the operating system refused
+    ├── OSError                  the operating system refused
+    └── PartialFileWarning       not raised, but shown: a file that was cut off is read in part
 """
 
 from __future__ import annotations
@@ -44,3 +45,7 @@ class LimitError(VmeshError):
 
 class ImageError(VmeshError):
     """The file is not a photograph that can be read."""
+
+
+class PartialFileWarning(UserWarning):
+    """A file ends too early, and its mesh holds what could be told from the start of it."""

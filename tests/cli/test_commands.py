@@ -16,6 +16,7 @@ from PIL import Image
 
 import vmesh
 from vmesh.codec import layout
+from vmesh.metrics import psnr
 
 COFFEE = Path(__file__).parents[1] / "images" / "coffee.png"
 CHELSEA = Path(__file__).parents[1] / "images" / "chelsea.png"
@@ -201,6 +202,67 @@ def test_info_decodes_the_mesh_if_asked_to(file: Path) -> None:
     assert f"{mesh.n_triangles} triangles" in succeed("info", file, "--parts").decode()
 
 
+def test_validate_says_that_a_file_is_sound(file: Path) -> None:
+    assert succeed("validate", file).decode() == f"{file}: valid\n"
+    assert json.loads(succeed("validate", file, "--json")) == {"valid": True, "findings": []}
+
+
+def test_validate_finds_all_that_is_wrong(file: Path, tmp_path: Path) -> None:
+    data = bytearray(file.read_bytes() + b"more")
+    data[7] ^= 1  # the width
+    damaged = tmp_path / "damaged.vmesh"
+    damaged.write_bytes(data)
+    done = run("validate", damaged)
+    assert done.returncode == 1
+    assert done.stderr == b""
+    lines = done.stdout.decode().splitlines()
+    assert all(line.startswith(f"{damaged}: error ") for line in lines)
+    codes = [line.removeprefix(f"{damaged}: error ").split()[0] for line in lines]
+    assert codes[:2] == ["checksum", "trailing"]
+    done = run("validate", damaged, "--json")
+    assert done.returncode == 1
+    report = json.loads(done.stdout)
+    assert not report["valid"]
+    assert [finding["code"] for finding in report["findings"]] == codes
+
+
+def test_dump_prints_every_field(file: Path) -> None:
+    lines = succeed("dump", file, "--bytes", "20").decode().splitlines()
+    data = file.read_bytes()
+    assert lines[0].startswith("00000000  8b 56 4d 0d 0a")
+    assert any("# width 600" in line for line in lines)
+    content = len(data) - 27
+    assert f"... {content - 20} more bytes" in lines[-2]
+    assert lines[-1].startswith(f"{len(data) - 4:08x}  {data[-4:].hex(' ')}")
+    everything = succeed("dump", file, "--bytes", "100000").decode().splitlines()
+    shown = "".join(line[10:58] for line in everything)
+    assert bytes.fromhex(shown) == data
+
+
+def test_dump_prints_the_mesh(file: Path) -> None:
+    mesh = vmesh.load(file)
+    lines = succeed("dump", file, "--mesh").decode().splitlines()
+    assert lines[1] == "canvas 600 400"
+    vertex = [*mesh.vertices[-1].tolist(), *mesh.levels[-1].tolist()]
+    assert lines[4 + mesh.n_vertices] == " ".join(map(str, vertex))
+    assert lines[-1] == " ".join(map(str, mesh.triangles[-1].tolist()))
+
+
+def test_decode_draws_a_file_that_was_cut_off_if_asked_to(file: Path, tmp_path: Path) -> None:
+    start, target = tmp_path / "start.vmesh", tmp_path / "out.png"
+    start.write_bytes(file.read_bytes()[: file.stat().st_size * 3 // 4])
+    assert "the file ends within chunk M" in fail(1, "decode", start, target)
+    assert not target.exists()
+    done = run("decode", start, target, "--allow-partial")
+    assert done.returncode == 0
+    expected = f"vmesh: {start}: the file ends within chunk M: what is missing is predicted\n"
+    assert done.stderr.decode() == expected
+    with Image.open(target) as image:
+        assert image.size == (600, 400)
+    whole, partial = vmesh.render(vmesh.load(file)), np.asarray(Image.open(target))
+    assert 18 < psnr(whole, partial) < 45
+
+
 def test_info_names_metadata(file: Path, tmp_path: Path) -> None:
     metadata = vmesh.Metadata(exif=b"II*\0", xmp=b"<x/>", unknown=((b"n", b"text"),))
     described = tmp_path / "described.vmesh"
@@ -380,7 +442,10 @@ def test_help_names_every_command_and_loads_neither_numba_nor_pillow(file: Path)
         )
         assert done.returncode == 0, done.stderr.decode()
         if arguments == ["--help"]:
-            commands = ["encode", "decode", "to-svg", "to-pdf", "info", "inspect", "compare"]
+            commands = [
+                "encode", "decode", "to-svg", "to-pdf", "info", "validate", "dump", "inspect",
+                "compare",
+            ]  # fmt: skip
             assert all(command in done.stdout.decode() for command in commands)
 
 

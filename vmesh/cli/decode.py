@@ -49,10 +49,15 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
     show_default=True,
     help="Samples per pixel and direction; for small results.",
 )
+@click.option(
+    "--allow-partial",
+    is_flag=True,
+    help="Draw what there is of a file that was cut off, if at least its positions are there.",
+)
 @limit_options
 @quiet_option
-def command(source: str, target: str, quiet: bool, **options: Any) -> None:
-    """Turn a .vmesh file into pixels: PNG, JPEG, WebP or TIFF, by the name of OUTPUT.
+def command(source: str, target: str, allow_partial: bool, quiet: bool, **options: Any) -> None:
+    """Turn a .vmesh file into pixels: PNG, JPEG, WebP, TIFF or PAM, by the name of OUTPUT.
 
     The size is that of the photograph, or --scale, --width, --height say it; one of the last two
     keeps the proportions. Standard output gets a PNG.
@@ -64,7 +69,7 @@ def command(source: str, target: str, quiet: bool, **options: Any) -> None:
     wanted = FORMATS[".png"] if target == STANDARD else format_of(target)
     with show_progress("decoding", 2, quiet=quiet) as report:
         report("reading")
-        mesh = read_mesh(source, limits)
+        mesh = read_mesh(source, limits, allow_partial=allow_partial)
         report("drawing")
         write_output(
             target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)

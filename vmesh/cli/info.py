@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Final
+from typing import Any
 
 import click
 
 from vmesh.cli.streams import read_input
 from vmesh.codec import layout
 from vmesh.errors import FormatError, LimitError
-
-_CONNECTIVITY_NAMES: Final = {
-    layout.IMPLIED_TRIANGLES: "implied",
-    layout.LISTED_TRIANGLES: "listed",
-    layout.FLIPPED_TRIANGLES: "flipped",
-}
-_CHUNK_NAMES: Final = {
-    layout.MESH_TAG: "mesh",
-    **{tag: name for name, tag in layout.METADATA_TAGS.items()},
-}
 
 
 @click.command("info")
@@ -54,16 +44,16 @@ def describe(data: bytes, by_parts: bool) -> dict[str, Any]:
         "version": ".".join(map(str, layout.VERSION)),
         "width": header.width,
         "height": header.height,
-        "components": {1: "grey", 3: "RGB", 4: "RGBA"}[header.n_components],
+        "components": layout.COMPONENT_NAMES[header.n_components],
         "color_steps": list(header.steps),
         "subdivision": header.subdivision,
         "vertices": header.n_vertices,
-        "connectivity": _CONNECTIVITY_NAMES[header.connectivity],
+        "connectivity": layout.CONNECTIVITY_NAMES[header.connectivity],
         "bytes": len(data),
         "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
     }
     parts = [("frame", len(data) - sum(len(chunk.content) for chunk in chunks))]
-    parts += [(_CHUNK_NAMES.get(c.tag, c.tag.decode()), len(c.content)) for c in chunks]
+    parts += [(layout.CHUNK_NAMES.get(c.tag, c.tag.decode()), len(c.content)) for c in chunks]
     if by_parts:
         from vmesh.codec.reader import measure
 

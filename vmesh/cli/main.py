@@ -18,6 +18,8 @@ COMMANDS: Final = {
     "to-svg": ("to_svg", "Turn a .vmesh file or a photograph into SVG."),
     "to-pdf": ("to_pdf", "Turn a .vmesh file or a photograph into PDF."),
     "info": ("info", "Say what is in a .vmesh file."),
+    "validate": ("validate", "Say all that is wrong with a .vmesh file."),
+    "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),
     "inspect": ("inspect", "Draw the stages of an encoding."),
     "compare": ("compare", "Measure how close two pictures or meshes are."),
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import click
 
 from vmesh.codec.layout import is_vmesh
-from vmesh.errors import FormatError, ImageError, LimitError
+from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import atomic_output
 
 if TYPE_CHECKING:
@@ -51,9 +52,14 @@ def check_suffix(path: str, suffixes: tuple[str, ...]) -> None:
         raise click.UsageError(f"{path}: expected a name that ends in {', '.join(suffixes)}")
 
 
-def read_mesh(path: str, limits: Limits) -> Mesh:
-    """Mesh of a .vmesh file."""
-    return _mesh_of(read_input(path), path, limits)
+def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:
+    """Mesh of a .vmesh file; if it may be partial, a line on standard error says that it is."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", PartialFileWarning)
+        mesh = _mesh_of(read_input(path), path, limits, allow_partial=allow_partial)
+    for warning in caught:
+        click.echo(f"vmesh: {path}: {warning.message}", err=True)
+    return mesh
 
 
 def read_photograph(path: str, limits: Limits) -> Picture:
@@ -72,11 +78,11 @@ def read_mesh_or_photograph(path: str, limits: Limits) -> Mesh | Picture:
     return _photograph_of(data, path, limits)
 
 
-def _mesh_of(data: bytes, path: str, limits: Limits) -> Mesh:
+def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:
     from vmesh.codec.reader import loads
 
     try:
-        return loads(data, limits=limits)
+        return loads(data, limits=limits, allow_partial=allow_partial)
     except FormatError as error:
         raise FormatError(error.code, f"{path}: {error.message}", error.offset) from None
     except LimitError as error:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import re
 import struct
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -36,6 +36,14 @@ IMPLIED_TRIANGLES: Final = 0
 LISTED_TRIANGLES: Final = 1
 FLIPPED_TRIANGLES: Final = 2
 
+COMPONENT_NAMES: Final = {1: "grey", 3: "RGB", 4: "RGBA"}
+CONNECTIVITY_NAMES: Final = {
+    IMPLIED_TRIANGLES: "implied",
+    LISTED_TRIANGLES: "listed",
+    FLIPPED_TRIANGLES: "flipped",
+}
+CHUNK_NAMES: Final = {MESH_TAG: "mesh", **{tag: name for name, tag in METADATA_TAGS.items()}}
+
 _CHECKSUM = struct.Struct("<I")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]")
 _MAX_VARINT: Final = (1 << 31) - 1
@@ -45,14 +53,27 @@ _MAX_VARINT: Final = (1 << 31) - 1
 _LEVELS_PER_BYTE: Final = 5_700
 
 
+Complain = Callable[[FormatError], None]
+"""Told of an error after which the file can still be read on; raises it, or does not."""
+
+
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """One chunk: its tag, its content, and where it and its content start in the file."""
+    """One chunk: its tag, its content, and where it and its content start in the file.
+
+    The content is shorter than `length` if the file ends within it.
+    """
 
     tag: bytes
+    length: int
     content: bytes
     offset: int
     content_offset: int
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of the content is there."""
+        return len(self.content) == self.length
 
     @property
     def is_critical(self) -> bool:
@@ -134,10 +155,21 @@ def is_vmesh(start: bytes) -> bool:
     return start[: len(SIGNATURE)] == SIGNATURE
 
 
-def read_file(data: bytes) -> tuple[Header, list[Chunk]]:
+def refuse(error: FormatError) -> None:
+    """Raise the error: read no further."""
+    raise error
+
+
+def read_file(data: bytes, complain: Complain = refuse) -> tuple[Header, list[Chunk]]:
     """The header of a file, every field within its range, and all chunks, the mesh last.
 
     Checksums are verified, the contents of the chunks are not looked at.
+
+    Parameters
+    ----------
+    data : bytes
+    complain : callable
+        Told of each error after which the file can still be read on. Without one it is raised.
 
     Raises
     ------
@@ -145,8 +177,8 @@ def read_file(data: bytes) -> tuple[Header, list[Chunk]]:
         With the code ``signature``, ``version``, ``truncated``, ``checksum``, ``header``,
         ``chunk`` or ``trailing``.
     """
-    header, offset = _read_header(data)
-    chunks = list(_iterate_chunks(data, offset))
+    header, offset = read_header(data, complain)
+    chunks = list(_iterate_chunks(data, offset, complain))
     room = len(chunks[-1].content)
     levels = header.n_vertices * header.n_components
     if levels > _LEVELS_PER_BYTE * (room + 1):
@@ -156,8 +188,8 @@ def read_file(data: bytes) -> tuple[Header, list[Chunk]]:
     return header, chunks
 
 
-def _read_header(data: bytes) -> tuple[Header, int]:
-    """The header, and the offset of what follows it."""
+def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
+    """The header, and the offset of what follows it; parameters and errors of `read_file`."""
     if not is_vmesh(data):
         if SIGNATURE.startswith(data):
             raise FormatError("truncated", "the file ends within its signature", len(data))
@@ -168,25 +200,28 @@ def _read_header(data: bytes) -> tuple[Header, int]:
         )
     start = len(SIGNATURE)
     # A newer version may have another header: its first byte alone is sure to mean the same.
-    _check_version(_take(data, start, 1, "the header")[0])
-    form = _take(data, start + 1, 1, "the header")[0]
+    check_version(take(data, start, 1, "the header")[0])
+    form = take(data, start + 1, 1, "the header")[0]
     numbers = []
     end = start + 2
     for _ in range(3):
-        number, end = _read_varint(data, end, "header")
+        number, end = read_varint(data, end, "header")
         numbers.append(number)
     width, height, n_vertices = numbers
     n_components = (form & 3) + 1
-    steps = tuple(_take(data, end, n_components, "the header"))
+    steps = tuple(take(data, end, n_components, "the header"))
     end += n_components
-    _verify(data, 0, end, "the header")
+    _verify(data, 0, end, "the header", complain)
     header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, steps)
-    for complaint in _header_complaints(header):
-        raise FormatError("header", complaint, start)
+    errors = [FormatError("header", text, start) for text in _header_complaints(header)]
+    for error in errors:
+        complain(error)
+    if errors:
+        raise errors.pop()
     return header, end + _CHECKSUM.size
 
 
-def _check_version(byte: int) -> None:
+def check_version(byte: int) -> None:
     """Refuse a file of another version, before anything else in it matters."""
     version = (byte >> 4, byte & 15)
     if version != VERSION:
@@ -219,43 +254,52 @@ def _header_complaints(header: Header) -> Iterator[str]:
         yield f"expected steps of 1 to 255, got {list(header.steps)}"
 
 
-def _iterate_chunks(data: bytes, offset: int) -> Iterator[Chunk]:
+def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Chunk]:
     """Chunks from an offset up to the mesh, with nothing after it."""
     known: set[bytes] = set()
     tag = b""
     while tag != MESH_TAG:
-        tag = _take(data, offset, 1, "a chunk")
+        tag = take(data, offset, 1, "a chunk")
         if not _TAG_PATTERN.fullmatch(tag):
             raise FormatError("chunk", f"expected a letter as a tag, got {tag!r}", offset)
         name = f"chunk {tag.decode()}"
-        length, start = _read_varint(data, offset + 1, "chunk")
-        content = _take(data, start, length, name)
-        _verify(data, offset, start + length, name)
-        chunk = Chunk(tag, content, offset, start)
+        length, start = read_varint(data, offset + 1, "chunk")
+        chunk = Chunk(tag, length, data[start : start + length], offset, start)
+        if tag == MESH_TAG and len(data) < start + length + _CHECKSUM.size:
+            complain(_truncated(data, name))
+            yield chunk
+            return
+        take(data, start, length, name)
+        _verify(data, offset, start + length, name, complain)
         if chunk.is_critical and tag != MESH_TAG:
-            raise FormatError("chunk", f"critical {name} is unknown", offset)
+            complain(FormatError("chunk", f"critical {name} is unknown", offset))
         if tag in known:
-            raise FormatError("chunk", f"{name} appears twice", offset)
+            complain(FormatError("chunk", f"{name} appears twice", offset))
         if tag in METADATA_TAGS.values():
             known.add(tag)
         yield chunk
         offset = start + length + _CHECKSUM.size
     if offset != len(data):
-        raise FormatError("trailing", f"{len(data) - offset} bytes follow the mesh", offset)
+        complain(FormatError("trailing", f"{len(data) - offset} bytes follow the mesh", offset))
 
 
-def _take(data: bytes, offset: int, length: int, name: str) -> bytes:
+def take(data: bytes, offset: int, length: int, name: str) -> bytes:
     """Bytes of the file, which must go on that far."""
     if len(data) < offset + length:
-        raise FormatError("truncated", f"the file ends within {name}", len(data))
+        raise _truncated(data, name)
     return data[offset : offset + length]
 
 
-def _read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
+def _truncated(data: bytes, name: str) -> FormatError:
+    """The error of a file that ends too early."""
+    return FormatError("truncated", f"the file ends within {name}", len(data))
+
+
+def read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
     """A number in the shortest form, and the offset of what follows it."""
     number = 0
     for i in range(5):
-        (byte,) = _take(data, offset + i, 1, f"a {code}")
+        (byte,) = take(data, offset + i, 1, f"a {code}")
         number |= (byte & 0x7F) << 7 * i
         if byte < 0x80:
             if (byte == 0 and i > 0) or number > _MAX_VARINT:
@@ -264,8 +308,8 @@ def _read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
     raise FormatError(code, f"expected a number of 0 to {_MAX_VARINT} in its shortest form", offset)
 
 
-def _verify(data: bytes, start: int, end: int, name: str) -> None:
+def _verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
     """Compare the checksum that follows some bytes."""
-    (stored,) = _CHECKSUM.unpack(_take(data, end, _CHECKSUM.size, name))
+    (stored,) = _CHECKSUM.unpack(take(data, end, _CHECKSUM.size, name))
     if stored != zlib.crc32(data[start:end]):
-        raise FormatError("checksum", f"{name} is damaged", start)
+        complain(FormatError("checksum", f"{name} is damaged", start))

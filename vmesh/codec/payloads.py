@@ -10,7 +10,7 @@ import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
 from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
-from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Header
+from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Chunk, Header
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
@@ -75,15 +75,18 @@ def encode_mesh(mesh: Mesh, header: Header, flips: Flips | None) -> bytes:
     return encode(write)
 
 
-def decode_mesh(content: bytes, offset: int, header: Header) -> tuple[Mesh, dict[str, int]]:
-    """The mesh of a content that starts at an offset of the file, and the bytes of its parts.
+def decode_mesh(chunk: Chunk, header: Header) -> tuple[Mesh, dict[str, int]]:
+    """The mesh of a chunk, and the bytes of its parts.
+
+    If the file ends within the chunk, colours that are missing follow from those that are there,
+    as their predictions, and triangles stay those of Delaunay.
 
     Raises
     ------
     FormatError
         With the code ``positions``, ``geometry``, ``colors`` or ``triangles``.
     """
-    decoder = Decoder(content, offset)
+    decoder = Decoder(chunk.content, chunk.content_offset, is_whole=chunk.is_whole)
     vertices = decoder.positions(header.n_vertices, header.columns, header.rows)
     lattice = ColorLattice(header.steps)
     triangles = delaunay(vertices)
@@ -102,7 +105,7 @@ def decode_mesh(content: bytes, offset: int, header: Header) -> tuple[Mesh, dict
         try:
             result.check()
         except ValueError as error:
-            raise FormatError("geometry", str(error), offset) from None
+            raise FormatError("geometry", str(error), chunk.content_offset) from None
         return result
 
     # Delaunay triangles cover the canvas if its corners are vertices, whatever is done with them.
@@ -110,7 +113,7 @@ def decode_mesh(content: bytes, offset: int, header: Header) -> tuple[Mesh, dict
     levels = decoder.levels(build_hierarchy(vertices, triangles), lattice)
     if header.connectivity == FLIPPED_TRIANGLES:
         triangles = decoder.flips(vertices, triangles, levels)
-    elif header.connectivity == LISTED_TRIANGLES:
+    elif header.connectivity == LISTED_TRIANGLES and chunk.is_whole:
         triangles = decoder.triangles(_n_triangles(vertices, header), header.n_vertices)
     else:
         return bare.replaced(levels=levels), decoder.finish()
@@ -192,14 +195,20 @@ class Decoder:
         The whole stream.
     offset : int
         Where it starts in the file, for the errors.
+    is_whole : bool
+        Whether the stream must be what it should be to its end. Otherwise it was cut off: the
+        positions must be there, and what follows is read as far as it goes.
     """
 
-    def __init__(self, content: bytes, offset: int) -> None:
+    def __init__(self, content: bytes, offset: int, *, is_whole: bool = True) -> None:
         self.coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
         self.data = np.frombuffer(bytearray(content), dtype=np.uint8)
         self.offset = offset
+        self.is_whole = is_whole
         self.sizes: dict[str, int] = {}
         entropy.start(self.coder, self.data, 1)
+        if not is_whole:
+            self.coder[entropy.LIMIT] = len(content)
 
     def positions(self, n: int, columns: int, rows: int) -> Int32Array:
         """Vertices in raster order, shape (n, 2), int32, distinct."""
@@ -241,7 +250,8 @@ class Decoder:
     def _end(self, part: str, status: int) -> None:
         """Refuse what was no such part, and note its size."""
         read, length = int(self.coder[entropy.POSITION]), len(self.data)
-        if read > length + _CUT_BYTES:
+        missing = read - length - (_CUT_BYTES if self.is_whole else 0)
+        if missing > 0 and (self.is_whole or part == "positions"):
             raise FormatError(part, f"the mesh ends within the {part}", self.offset + length)
         if status != entropy.OK:
             where = self.offset + min(read, length)

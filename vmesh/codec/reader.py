@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import warnings
 import zlib
 
 from vmesh.codec import layout
 from vmesh.codec.layout import Chunk
 from vmesh.codec.payloads import decode_mesh
-from vmesh.errors import FormatError
+from vmesh.errors import FormatError, PartialFileWarning
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 
 
-def loads(data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMITS) -> Mesh:
+def loads(
+    data: bytes | bytearray | memoryview,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    allow_partial: bool = False,
+) -> Mesh:
     """Mesh of the bytes of a ``.vmesh`` file, in canonical order.
 
     Parameters
@@ -21,6 +27,10 @@ def loads(data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMI
         A whole file.
     limits : Limits
         What the file may ask for; checked before anything is allocated.
+    allow_partial : bool
+        Whether to take a file that was cut off, if all positions are there: some 40 % of it. The
+        colours that are missing are predicted from those that came before, which is a whole
+        picture, but a coarser one, and a :class:`PartialFileWarning` says so.
 
     Raises
     ------
@@ -29,16 +39,32 @@ def loads(data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMI
     LimitError
         If they are, but ask for more than `limits` allow.
     """
-    mesh, _ = measure(data, limits=limits)
+    if not allow_partial:
+        return measure(data, limits=limits)[0]
+    cuts: list[FormatError] = []
+
+    def pass_over(error: FormatError) -> None:
+        """Note that the file was cut off; all else is an error."""
+        if error.code != "truncated":
+            raise error
+        cuts.append(error)
+
+    mesh, _ = measure(data, limits=limits, complain=pass_over)
+    for cut in cuts:
+        text = f"{cut.message}: what is missing is predicted"
+        warnings.warn(PartialFileWarning(text), stacklevel=2)
     return mesh
 
 
 def measure(
-    data: bytes | bytearray | memoryview, *, limits: Limits = DEFAULT_LIMITS
+    data: bytes | bytearray | memoryview,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    complain: layout.Complain = layout.refuse,
 ) -> tuple[Mesh, dict[str, int]]:
     """Mesh of the bytes of a ``.vmesh`` file, and how many of them its parts take.
 
-    Parameters and errors are those of :func:`loads`.
+    Parameters and errors are those of :func:`loads`; `complain` is that of `layout.read_file`.
 
     Returns
     -------
@@ -47,12 +73,12 @@ def measure(
         Bytes of ``positions``, of ``colors``, and of ``triangles`` if they are not implied. They
         share one stream: a byte on the bound between two parts belongs to one of them.
     """
-    header, chunks = layout.read_file(bytes(memoryview(data)))
+    header, chunks = layout.read_file(bytes(memoryview(data)), complain)
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
     *ancillary, coded = chunks
     metadata = _read_metadata(ancillary, limits)
-    mesh, sizes = decode_mesh(coded.content, coded.content_offset, header)
+    mesh, sizes = decode_mesh(coded, header)
     return mesh.replaced(metadata=metadata), sizes
 
 
@@ -64,7 +90,7 @@ def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
     total = 0
     for chunk in chunks:
         if chunk.tag in names:
-            known[names[chunk.tag]] = block = _inflate(chunk, limits)
+            known[names[chunk.tag]] = block = inflate(chunk, limits)
             total += len(block)
         else:
             unknown.append((chunk.tag, chunk.content))
@@ -73,8 +99,8 @@ def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
     return Metadata(**known, unknown=tuple(unknown))
 
 
-def _inflate(chunk: Chunk, limits: Limits) -> bytes:
-    """Content of a metadata chunk, inflated to no more than the limit."""
+def inflate(chunk: Chunk, limits: Limits) -> bytes:
+    """Content of a known metadata chunk, inflated to no more than the limit."""
     inflater = zlib.decompressobj()
     try:
         block = inflater.decompress(chunk.content, limits.max_metadata + 1)

@@ -15,7 +15,7 @@ from vmesh.mesh import Mesh
 Source = str | os.PathLike[str] | BinaryIO
 
 
-def load(source: Source, *, limits: Limits = DEFAULT_LIMITS) -> Mesh:
+def load(source: Source, *, limits: Limits = DEFAULT_LIMITS, allow_partial: bool = False) -> Mesh:
     """Mesh of a ``.vmesh`` file, given by its path or as an open binary file.
 
     Raises
@@ -25,9 +25,14 @@ def load(source: Source, *, limits: Limits = DEFAULT_LIMITS) -> Mesh:
     OSError
         If the file cannot be read.
     """
+    return loads(_read(source), limits=limits, allow_partial=allow_partial)
+
+
+def _read(source: Source) -> bytes:
+    """All bytes of a path or of an open binary file."""
     if isinstance(source, str | os.PathLike):
-        return loads(Path(source).read_bytes(), limits=limits)
-    return loads(source.read(), limits=limits)
+        return Path(source).read_bytes()
+    return source.read()
 
 
 def dump(mesh: Mesh, target: Source) -> None:

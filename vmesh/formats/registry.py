@@ -17,7 +17,7 @@ Writer = Callable[..., None]
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """An output format: its writer, and Pillow's name for it where it is made of pixels."""
+    """An output format: its writer, and its name where it is made of pixels."""
 
     module: str
     function: str
@@ -41,6 +41,7 @@ FORMATS: Final = {
     ".webp": Format("vmesh.formats.raster", "write_raster", "WEBP"),
     ".tif": Format("vmesh.formats.raster", "write_raster", "TIFF"),
     ".tiff": Format("vmesh.formats.raster", "write_raster", "TIFF"),
+    ".pam": Format("vmesh.formats.pam", "write_pam", "PAM"),
     ".svg": Format("vmesh.formats.svg", "write_svg"),
     ".svgz": Format("vmesh.formats.svg", "write_svgz"),
     ".pdf": Format("vmesh.formats.pdf", "write_pdf"),
@@ -75,7 +76,7 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
 
 
 def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
-    """Write a mesh as PNG, JPEG, WebP, TIFF, SVG or PDF, by the ending of the file's name.
+    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG or PDF, by the ending of the file's name.
 
     Parameters
     ----------

@@ -34,7 +34,8 @@ RANGE = 2
 LOW = 3  # writing: low end of the range, 33 bits; reading: the code minus it
 CACHE = 4  # writing: the byte that a carry may still raise
 PENDING = 5  # writing: bytes 0xFF after it that a carry would turn to 0
-N_FIELDS = 6
+LIMIT = 6  # reading: numbers that take more bytes than this are left as predicted
+N_FIELDS = 7
 
 RATE_LIMIT = 250
 TOP = 1 << 24
@@ -137,6 +138,7 @@ def start(coder: Int64Array, data: UInt8Array, decoding: int) -> None:
     coder[DECODING] = decoding
     coder[RANGE] = MASK + 1
     coder[CACHE] = -1
+    coder[LIMIT] = 1 << 62
     if decoding:
         for _ in range(4):
             coder[LOW] = (coder[LOW] << 8) | read_byte(coder, data)
@@ -417,14 +419,14 @@ def code_levels(
             context = base + spread * SIZE_CONTEXTS
             error = levels[v, z] - prediction
             size = code_size(coder, data, odds, context, abs(error))
-            if size < 0:
-                return BAD_NUMBER
             negative = 0
             if size > 0:
                 sign_context = base + N_SPREADS * SIZE_CONTEXTS + lean
                 negative = code_bit(coder, data, odds, sign_context, 1 if error < 0 else 0)
             level = prediction - size if negative == 1 else prediction + size
-            if level < lowest[z] or level > highest[z]:
+            if coder[POSITION] > coder[LIMIT]:
+                level = prediction
+            elif size < 0 or level < lowest[z] or level > highest[z]:
                 return BAD_NUMBER
             levels[v, z] = level
     return OK
@@ -572,7 +574,10 @@ def code_flips(
             if place < removed.shape[0] and removed[place] == edge:
                 bit = 1 if created[place] == np.int64(min(a, d)) << 32 | max(a, d) else 0
         context = (first * N_ANGLES + angles) * N_SLOPES + slope
-        if code_bit(coder, data, odds, context, bit) == 0:
+        bit = code_bit(coder, data, odds, context, bit)
+        if coder[POSITION] > coder[LIMIT]:
+            return OK
+        if bit == 0:
             continue
         n_flips += 1
         if n_flips > MAX_FLIPS * n_edges:

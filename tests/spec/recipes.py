@@ -1,0 +1,319 @@
+"""Meshes and files that the specification is tried on, and the conformance files are made of."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+import vmesh
+from tests.codec.damage import (
+    SIGNATURE,
+    checked,
+    chunk_of,
+    file_of,
+    padded,
+    split,
+    varint,
+    with_content,
+    with_header,
+)
+from vmesh.codec.hierarchy import build_hierarchy
+from vmesh.codec.payloads import Encoder, encode
+from vmesh.codec.reader import measure
+from vmesh.kernels import entropy
+from vmesh.kernels.delaunay import delaunay
+from vmesh.mesh import Mesh, Metadata
+
+
+def mesh_of(
+    width: int,
+    height: int,
+    n_components: int,
+    *,
+    n_vertices: int = 4,
+    subdivision: int = 0,
+    step: int = 1,
+    metadata: Metadata | None = None,
+) -> Mesh:
+    """A Delaunay mesh with random vertices and colours."""
+    random = np.random.default_rng(width + 100 * height + n_vertices)
+    far_x, far_y = width << subdivision, height << subdivision
+    sites = {(0, 0), (far_x, 0), (0, far_y), (far_x, far_y)}
+    while len(sites) < n_vertices:
+        sites.add((int(random.integers(far_x + 1)), int(random.integers(far_y + 1))))
+    vertices = np.array(sorted(sites, key=lambda site: site[::-1]), dtype=np.int32)
+    colors = random.integers(0, 256, (len(vertices), n_components))
+    return Mesh.from_colors(
+        width,
+        height,
+        vertices,
+        delaunay(vertices),
+        colors,
+        step=step,
+        subdivision=subdivision,
+        metadata=metadata,
+    )
+
+
+def flipped(mesh: Mesh, n_flips: int) -> Mesh:
+    """The mesh with the first inner edges of convex quads flipped, each in triangles of its own."""
+    faces: list[tuple[int, ...]] = [tuple(face) for face in mesh.triangles.tolist()]
+    owner = {}
+    for t, (a, b, c) in enumerate(faces):
+        owner[a, b], owner[b, c], owner[c, a] = (t, c), (t, a), (t, b)
+    touched: set[int] = set()
+    for (b, c), (t, a) in owner.items():
+        u, d = owner.get((c, b), (t, a))
+        if touched & {t, u} or t == u or len(touched) == 2 * n_flips:
+            continue
+        pair = mesh.replaced(triangles=np.array([(a, b, d), (a, d, c)], dtype=np.int32))
+        if (pair.doubled_areas() > 0).all():
+            faces[t], faces[u] = (a, b, d), (a, d, c)
+            touched |= {t, u}
+    assert len(touched) == 2 * n_flips
+    return mesh.replaced(triangles=np.array(faces, dtype=np.int32)).canonical()
+
+
+def askew(width: int) -> Mesh:
+    """Two rows of vertices, the upper ones all joined to one of the lower: far from Delaunay."""
+    vertices = np.array([(x, y) for y in (0, 1) for x in range(width + 1)], dtype=np.int32)
+    triangles = [(x, x + 1, width + 1) for x in range(width)]
+    triangles += [(width, width + 2 + x, width + 1 + x) for x in range(width)]
+    colors = np.random.default_rng(width).integers(0, 256, (len(vertices), 3))
+    return Mesh.from_colors(width, 1, vertices, np.array(triangles), colors).canonical()
+
+
+def picture(height: int, width: int, *components: int, method: str = "blue-noise") -> Mesh:
+    """What the encoder makes of noise."""
+    noise = np.random.default_rng(1).integers(0, 256, (height, width, *components), dtype=np.uint8)
+    return vmesh.encode(noise, method=method)
+
+
+def gradient(height: int, width: int) -> Mesh:
+    """What the adaptive encoder makes of a soft slanted edge."""
+    y, x = np.mgrid[:height, :width]
+    level = np.clip(128 + 12 * (x + 3 * y - width - height), 0, 255)
+    planes = np.stack([level, 255 - level, level // 2], axis=2).astype(np.uint8)
+    return vmesh.encode(planes, vertices=60)
+
+
+def grid(side: int) -> Mesh:
+    """All sites of a square canvas: every circle holds four vertices."""
+    return mesh_of(side, side, 1, n_vertices=(side + 1) ** 2)
+
+
+METADATA: Final = Metadata(
+    icc=b"profile" * 40, exif=b"II*\0", xmp=b"<x/>", unknown=((b"n", b""), (b"n", b"\0"))
+)
+
+MESHES: Final[dict[str, Callable[[], Mesh]]] = {
+    "one pixel": lambda: picture(1, 1, 3),
+    "one grey pixel": lambda: picture(1, 1),
+    "two by three": lambda: picture(3, 2, 3),
+    "rgb": lambda: picture(12, 16, 3),
+    "grey": lambda: picture(12, 16),
+    "rgba": lambda: picture(12, 16, 4),
+    "four corners": lambda: mesh_of(5, 3, 3),
+    "delaunay": lambda: mesh_of(16, 12, 3, n_vertices=70),
+    "many ties": lambda: grid(9),
+    "large counts": lambda: mesh_of(40, 30, 1, n_vertices=300),
+    "no subdivision": lambda: mesh_of(16, 12, 4, n_vertices=40),
+    "subdivision 1": lambda: mesh_of(16, 12, 4, n_vertices=40, subdivision=1),
+    "subdivision 8": lambda: mesh_of(11, 13, 1, n_vertices=40, subdivision=8),
+    "step 8": lambda: mesh_of(16, 12, 4, n_vertices=40, step=8),
+    "step 255": lambda: mesh_of(8, 8, 3, n_vertices=30, step=255),
+    "wide and flat": lambda: mesh_of(300, 1, 3, n_vertices=50, subdivision=2),
+    "flipped": lambda: flipped(mesh_of(16, 12, 3, n_vertices=70), 12),
+    "flipped, ties": lambda: flipped(grid(8), 20),
+    "flipped, two triangles": lambda: flipped(mesh_of(5, 3, 1), 1),
+    "flipped, subdivision 8": lambda: flipped(mesh_of(11, 13, 4, n_vertices=40, subdivision=8), 7),
+    "flipped, adaptive": lambda: gradient(24, 32),
+    "listed": lambda: askew(24),
+    "metadata": lambda: mesh_of(4, 4, 3, n_vertices=9, metadata=METADATA),
+}
+
+
+def corners_only(width: int, height: int, colors: list[int]) -> Mesh:
+    vertices = np.array([(0, 0), (width, 0), (0, height), (width, height)], dtype=np.int32)
+    return Mesh.from_colors(
+        width, height, vertices, delaunay(vertices), np.array(colors)[:, np.newaxis]
+    )
+
+
+TWO_PIXELS: Final = corners_only(2, 1, [0, 255, 0, 255])
+DUMPED: Final = [
+    TWO_PIXELS,
+    TWO_PIXELS.replaced(triangles=np.array([(0, 1, 2), (1, 3, 2)], dtype=np.int32)),
+    corners_only(1, 1, [0, 0, 0, 0]),
+]
+
+
+# Files that break a rule.
+
+VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=METADATA), 2))
+HEADER, CHUNKS = split(VALID)
+MESH: Final = CHUNKS[-1]
+SIZES: Final = measure(VALID)[1]
+START: Final = checked(SIGNATURE + HEADER)
+
+
+def with_mesh(content: bytes) -> bytes:
+    """The valid file with another content of M."""
+    return file_of(HEADER, [*CHUNKS[:-1], (b"M", content)])
+
+
+def with_chunks(*chunks: tuple[bytes, bytes]) -> bytes:
+    """The valid file with other chunks before M."""
+    return file_of(HEADER, [*chunks, MESH])
+
+
+def with_numbers(*numbers: bytes) -> bytes:
+    """The valid file with other width, height and number of vertices."""
+    return file_of(HEADER[:2] + b"".join(numbers) + HEADER[-3:], CHUNKS)
+
+
+def without_triangles(encoder: Encoder, mesh: Mesh) -> None:
+    """Write positions and colours of a mesh."""
+    columns, rows = (side * mesh.unit + 1 for side in (mesh.width, mesh.height))
+    encoder.positions(mesh.vertices, columns, rows)
+    hierarchy = build_hierarchy(mesh.vertices, delaunay(mesh.vertices))
+    encoder.levels(mesh.levels, hierarchy, mesh.lattice)
+
+
+def listed(mesh: Mesh, *triangles: tuple[int, int, int]) -> bytes:
+    """A file of the mesh with listed triangles that need not make sense."""
+
+    def write(encoder: Encoder) -> None:
+        without_triangles(encoder, mesh)
+        encoder.triangles(np.array(triangles, dtype=np.int32), n_vertices=1000)
+
+    header, _ = split(with_header(vmesh.dumps(mesh), connectivity=1))
+    return file_of(header, [(b"M", encode(write))])
+
+
+def flipped_for_ever(mesh: Mesh) -> bytes:
+    """A file of the mesh in which every edge that can be flipped is flipped."""
+
+    def write(encoder: Encoder) -> None:
+        without_triangles(encoder, mesh)
+        odds = entropy.even_odds(64)
+        for context in range(64):  # Zeros that follow many ones are read as ones.
+            entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+
+    header, _ = split(with_header(vmesh.dumps(mesh), connectivity=2))
+    return file_of(header, [(b"M", encode(write) + bytes(400))])
+
+
+def misplaced(width: int, height: int, *vertices: tuple[int, int]) -> bytes:
+    """A file of a canvas with other vertices than its corners, and colours of no bits."""
+    points = np.array(vertices, dtype=np.int32)
+    content = encode(lambda encoder: encoder.positions(points, width + 1, height + 1))
+    header = bytes([1, 0, width, height, len(points), 1])
+    return file_of(header, [(b"M", content)])
+
+
+def fan(side: int, x: int, y: int) -> Mesh:
+    """The corners of a square canvas, 0, 1, 3, 4, around the vertex 2 at x, y."""
+    vertices = np.array([(0, 0), (side, 0), (x, y), (0, side), (side, side)], dtype=np.int32)
+    triangles = np.array([(0, 1, 2), (0, 2, 3), (1, 4, 2), (2, 4, 3)], dtype=np.int32)
+    return Mesh.from_colors(side, side, vertices, triangles, [[5], [90], [200], [40], [250]])
+
+
+def cut(data: bytes, n_bytes: int) -> bytes:
+    """The file without some bytes at the end of its mesh."""
+    return with_content(data, b"M", split(data)[1][-1][1][:-n_bytes])
+
+
+IMPLIED: Final = vmesh.dumps(mesh_of(6, 5, 3, n_vertices=15))
+LIST: Final = vmesh.dumps(askew(20))
+FLIPPED: Final = vmesh.dumps(flipped(mesh_of(16, 12, 3, n_vertices=70), 12))
+
+DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
+    "nothing": ("truncated", b""),
+    "a photograph": ("signature", b"\x89PNG\r\n\x1a\n" + bytes(40)),
+    "draft 0": ("signature", b"\x8bVMS\r\n\x1a\n" + bytes(40)),
+    "line ends converted": ("signature", VALID.replace(b"\r\n", b"\n")),
+    "half a signature": ("truncated", VALID[:3]),
+    "only a signature": ("truncated", VALID[:5]),
+    "half a header": ("truncated", VALID[:9]),
+    "no chunk": ("truncated", START),
+    "no mesh": ("truncated", file_of(HEADER, CHUNKS[:-1])),
+    "no last byte": ("truncated", VALID[:-1]),
+    "a byte more": ("trailing", VALID + b"\0"),
+    "two meshes": ("trailing", VALID + chunk_of(*MESH)),
+    "a note too late": ("trailing", VALID + chunk_of(b"n", b"")),
+    "a flipped bit": ("checksum", VALID[:30] + bytes([VALID[30] ^ 1]) + VALID[31:]),
+    "a flipped bit of a step": ("checksum", VALID[:10] + bytes([VALID[10] ^ 1]) + VALID[11:]),
+    "a flipped bit of a tag": ("checksum", START + b"m" + chunk_of(*MESH)[1:]),
+    "version 0.0": ("version", with_header(VALID, version=0x00)),
+    "version 0.2": ("version", with_header(VALID, version=0x02)),
+    "version 1.0": ("version", with_header(VALID, version=0x10)),
+    "a version alone": ("version", VALID[:5] + b"\x10"),
+    "no width": ("header", with_header(VALID, width=0)),
+    "no height": ("header", with_header(VALID, height=0)),
+    "too wide": ("header", with_header(VALID, width=65_536)),
+    "too high": ("header", with_header(VALID, height=65_536)),
+    "subdivision 9": ("header", with_header(VALID, subdivision=9)),
+    "a huge lattice": ("header", with_header(VALID, height=65_535, subdivision=4)),
+    "two components": ("header", with_header(VALID, b"\1\1", components=1)),
+    "unknown connectivity": ("header", with_header(VALID, connectivity=3)),
+    "three vertices": ("header", with_header(VALID, n_vertices=3)),
+    "too many vertices": ("header", with_header(VALID, n_vertices=43)),
+    "more vertices than bytes": (
+        "header",
+        with_header(VALID, width=2000, height=2000, n_vertices=1900 * (len(MESH[1]) + 1) + 1),
+    ),
+    "step 0": ("header", with_header(VALID, b"\1\0\1")),
+    "a long width": ("header", with_numbers(padded(6), varint(5), varint(15))),
+    "a long height": ("header", with_numbers(varint(6), padded(5), varint(15))),
+    "a long count": ("header", with_numbers(varint(6), varint(5), padded(15))),
+    "a number without end": ("header", with_numbers(b"\x80" * 9)),
+    "a number of 32 bits": ("header", with_numbers(varint(6), varint(5), varint(2**31))),
+    "a digit as a tag": ("chunk", with_chunks((b"1", b""))),
+    "a tag that is not ASCII": ("chunk", with_chunks((b"\xe9", b""))),
+    "a long length": ("chunk", START + b"M" + padded(len(MESH[1])) + MESH[1]),
+    "a length of 32 bits": ("chunk", START + b"M" + varint(2**31) + MESH[1]),
+    "a length without end": ("chunk", START + b"M" + b"\xff" * 9),
+    "two profiles": ("chunk", with_chunks(CHUNKS[0], (b"n", b""), CHUNKS[0])),
+    "unknown and critical": ("chunk", with_chunks((b"C", b""))),
+    "not deflated": ("metadata", with_chunks((b"i", b"profile"))),
+    "half a stream": ("metadata", with_chunks((b"e", zlib.compress(b"profile" * 9)[:-5]))),
+    "two streams": ("metadata", with_chunks((b"x", 2 * zlib.compress(b"profile")))),
+    "an empty profile": ("metadata", with_chunks((b"i", zlib.compress(b"")))),
+    "no positions": ("positions", with_mesh(b"")),
+    "half of the positions": ("positions", with_mesh(MESH[1][:2])),
+    "other positions": ("geometry", misplaced(3, 3, (1, 1), (2, 1), (1, 2), (2, 2))),
+    "three corners": ("geometry", misplaced(3, 3, (0, 0), (3, 0), (0, 3), (2, 3))),
+    "half of the colours": ("colors", with_mesh(MESH[1][: SIZES["positions"] + 12])),
+    "more colours": ("colors", with_header(FLIPPED, connectivity=0)),
+    "half of the flips": ("triangles", cut(FLIPPED, 6)),
+    "more flips": ("triangles", with_mesh(MESH[1] + bytes(9))),
+    "flips without end": ("triangles", flipped_for_ever(mesh_of(6, 5, 1, n_vertices=15))),
+    "half of a list": ("triangles", cut(LIST, 20)),
+    "corners missing though triangles are listed": (
+        "geometry",
+        with_header(misplaced(3, 3, (1, 1), (2, 1), (1, 2), (2, 2)), connectivity=1),
+    ),
+    "an unknown third vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 5), (2, 4, 3)),
+    ),
+    "an unknown second vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 5, 4), (2, 4, 3)),
+    ),
+    "an unknown first vertex": (
+        "triangles",
+        listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (5, 6, 7)),
+    ),
+    "a gap and an overlap of the same size": (
+        "geometry",
+        listed(mesh_of(2, 1, 1, n_vertices=6), (0, 1, 3), (0, 4, 3), (1, 2, 4), (1, 5, 4)),
+    ),
+    "an overlap": ("geometry", listed(DUMPED[1], (0, 1, 3), (1, 3, 2))),
+    "a fold": ("geometry", listed(fan(3, 2, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
+    "a line": ("geometry", listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
+}

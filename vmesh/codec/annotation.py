@@ -1,0 +1,88 @@
+"""The bytes of a .vmesh file, field by field, for people: also of a file that is damaged."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from vmesh.codec import layout
+from vmesh.errors import FormatError
+
+
+class Field(NamedTuple):
+    """Some bytes of a file and what they mean."""
+
+    offset: int
+    data: bytes
+    meaning: str
+
+
+def annotate(data: bytes) -> Iterator[Field]:
+    """The fields of a file, one after the other; all bytes belong to one of them.
+
+    Where the file breaks a rule so that its fields cannot be told apart any more, the rest is one
+    field that says why.
+    """
+    offset = 0
+    try:
+        for size, meaning in _sizes(data):
+            yield Field(offset, layout.take(data, offset, size, meaning.strip()), meaning)
+            offset += size
+    except FormatError as error:
+        yield Field(offset, data[offset:], f"{error.code}: {error.message}")
+
+
+def _sizes(data: bytes) -> Iterator[tuple[int, str]]:
+    """Size and meaning of each field."""
+    yield from _header_sizes(data)
+    _, at = layout.read_header(data, _ignore)
+    tag = b""
+    while tag != layout.MESH_TAG:
+        tag = layout.take(data, at, 1, "a chunk")
+        kind = "critical" if tag.isupper() else "ancillary"
+        name = layout.CHUNK_NAMES.get(tag, f"unknown, {kind}")
+        yield 1, f"chunk {tag.decode('ascii', 'backslashreplace')}: {name}"
+        length, start = layout.read_varint(data, at + 1, "chunk")
+        yield start - at - 1, f"  {length} bytes"
+        if length:
+            yield length, "  content"
+        yield 4, "  " + _checksum(data, at, start + length)
+        at = start + length + 4
+    if at < len(data):
+        yield len(data) - at, "trailing: nothing may follow the mesh"
+
+
+def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:
+    """Size and meaning of each field of signature and header."""
+    if not layout.is_vmesh(data):
+        layout.read_header(data)  # It says what is wrong.
+    at = len(layout.SIGNATURE)
+    yield at, "signature"
+    (version,) = layout.take(data, at, 1, "the header")
+    yield 1, f"version {version >> 4}.{version & 15}"
+    layout.check_version(version)
+    (form,) = layout.take(data, at + 1, 1, "the header")
+    n_components = (form & 3) + 1
+    components = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
+    triangles = layout.CONNECTIVITY_NAMES.get(form >> 6, "unknown")
+    yield 1, f"{components}, subdivision {form >> 2 & 15}, {triangles} triangles"
+    at += 2
+    for name in ("width", "height", "vertices"):
+        number, end = layout.read_varint(data, at, "header")
+        yield end - at, f"{name} {number}"
+        at = end
+    steps = layout.take(data, at, n_components, "the header")
+    yield n_components, "colour steps " + ", ".join(map(str, steps))
+    yield 4, _checksum(data, 0, at + n_components)
+
+
+def _checksum(data: bytes, start: int, end: int) -> str:
+    """What is to be said of the checksum that follows some bytes."""
+    stored = int.from_bytes(layout.take(data, end, 4, "a checksum"), "little")
+    computed = zlib.crc32(data[start:end])
+    return "CRC-32" if stored == computed else f"CRC-32, WRONG: it should be {computed:08x}"
+
+
+def _ignore(_: FormatError) -> None:
+    """Read on."""
