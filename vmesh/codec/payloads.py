@@ -88,36 +88,27 @@ def decode_mesh(chunk: Chunk, header: Header) -> tuple[Mesh, dict[str, int]]:
     """
     decoder = Decoder(chunk.content, chunk.content_offset, is_whole=chunk.is_whole)
     vertices = decoder.positions(header.n_vertices, header.columns, header.rows)
+    is_corner = ((vertices == 0) | (vertices == [header.columns - 1, header.rows - 1])).all(axis=1)
+    if np.count_nonzero(is_corner) != 4:
+        raise FormatError("geometry", "a corner of the canvas is no vertex", chunk.content_offset)
     lattice = ColorLattice(header.steps)
     triangles = delaunay(vertices)
-
-    def mesh(triangles: Int32Array, levels: Int32Array) -> Mesh:
-        """The mesh, once it has passed its check."""
-        result = Mesh(
-            header.width,
-            header.height,
-            vertices,
-            triangles,
-            levels,
-            lattice,
-            header.subdivision,
-        )
-        try:
-            result.check()
-        except ValueError as error:
-            raise FormatError("geometry", str(error), chunk.content_offset) from None
-        return result
-
-    # Delaunay triangles cover the canvas if its corners are vertices, whatever is done with them.
-    bare = mesh(triangles, np.zeros((len(vertices), lattice.n_components), dtype=np.int32))
     levels = decoder.levels(build_hierarchy(vertices, triangles), lattice)
+    is_listed = header.connectivity == LISTED_TRIANGLES and chunk.is_whole
     if header.connectivity == FLIPPED_TRIANGLES:
         triangles = decoder.flips(vertices, triangles, levels)
-    elif header.connectivity == LISTED_TRIANGLES and chunk.is_whole:
+    elif is_listed:
         triangles = decoder.triangles(_n_triangles(vertices, header), header.n_vertices)
-    else:
-        return bare.replaced(levels=levels), decoder.finish()
-    return mesh(triangles, levels), decoder.finish()
+    mesh = Mesh(
+        header.width, header.height, vertices, triangles, levels, lattice, header.subdivision
+    )
+    if is_listed:
+        # Delaunay triangles cover a canvas whose corners are vertices, and a flip changes nothing.
+        try:
+            mesh.check()
+        except ValueError as error:
+            raise FormatError("geometry", str(error), chunk.content_offset) from None
+    return mesh, decoder.finish()
 
 
 def _n_triangles(vertices: Int32Array, header: Header) -> int:
