@@ -1,0 +1,259 @@
+/**
+ * The canonical Delaunay triangulation (section 6.2 of the specification), by the divide and
+ * conquer of Guibas and Stolfi, "Primitives for the manipulation of general subdivisions", 1985,
+ * in O(n log n) steps for any vertices. It needs no step for the tie rule: `isInCircle` decides
+ * ties as if the vertices were lifted by that rule.
+ *
+ * Vertices are in raster order. With y for the axis along which Guibas and Stolfi sort, and -x for
+ * the other, their left and right are the earlier and the later vertices, and their
+ * counterclockwise is the positive turn.
+ */
+
+import { canonicalOrder, cross, isInCircle } from "./geometry.js";
+
+/**
+ * Directed edges around their origins: edge e and its reverse e ^ 1 are next to each other in the
+ * tables. "Next" is in the direction of the positive turn.
+ */
+export class Triangulation {
+  /** @param {Int32Array} points x and y of distinct vertices in raster order, at least two */
+  constructor(points) {
+    const nVertices = points.length / 2;
+    this.points = points;
+    this.nEdges = 0;
+    this.freeEdges = [];
+    this.originOf = new Int32Array(6 * nVertices);
+    this.nextAround = new Int32Array(6 * nVertices);
+    this.prevAround = new Int32Array(6 * nVertices);
+    /** An edge that starts at each vertex. */
+    this.edgeFrom = new Int32Array(nVertices);
+    this.divide(0, nVertices);
+  }
+
+  // Reading the subdivision
+
+  destOf(e) {
+    return this.originOf[e ^ 1];
+  }
+
+  /** The edge after e around the face on its left. */
+  nextOfFace(e) {
+    return this.prevAround[e ^ 1];
+  }
+
+  /** The edge before e around the face on its left. */
+  prevOfFace(e) {
+    return this.nextAround[e] ^ 1;
+  }
+
+  isLeftOf(v, e) {
+    return cross(this.points, v, this.originOf[e], this.destOf(e)) > 0;
+  }
+
+  isRightOf(v, e) {
+    return cross(this.points, v, this.destOf(e), this.originOf[e]) > 0;
+  }
+
+  /** Whether the face on the left of e is a triangle; the face outside the canvas is not. */
+  hasTriangle(e) {
+    const after = this.nextAround[e];
+    return cross(this.points, this.originOf[e], this.destOf(e), this.destOf(after)) > 0;
+  }
+
+  /** The triangles of a canvas with all its corners, in canonical order. */
+  triangles() {
+    const nVertices = this.points.length / 2;
+    const triangles = new Int32Array(6 * nVertices);
+    let n = 0;
+    for (let v = 0; v < nVertices; v++) {
+      for (const e of this.edgesAround(v)) {
+        const second = this.destOf(e);
+        const third = this.destOf(this.nextAround[e]);
+        if (v < second && v < third && this.hasTriangle(e)) {
+          triangles[n++] = v;
+          triangles[n++] = second;
+          triangles[n++] = third;
+        }
+      }
+    }
+    return canonicalOrder(triangles.subarray(0, n), nVertices);
+  }
+
+  /** The edges that start at a vertex, in the direction of the positive turn. */
+  edgesAround(v) {
+    const edges = [];
+    let e = this.edgeFrom[v];
+    do {
+      edges.push(e);
+      e = this.nextAround[e];
+    } while (e !== edges[0]);
+    return edges;
+  }
+
+  // Changing the subdivision
+
+  makeEdge(origin, dest) {
+    let e = this.freeEdges.pop();
+    if (e === undefined) {
+      e = this.nEdges;
+      this.nEdges += 2;
+    }
+    this.addEnd(e, origin);
+    this.addEnd(e ^ 1, dest);
+    return e;
+  }
+
+  addEnd(e, origin) {
+    this.originOf[e] = origin;
+    this.nextAround[e] = e;
+    this.prevAround[e] = e;
+    this.edgeFrom[origin] = e;
+  }
+
+  /** Joins the rings of edges around two origins, or divides one ring in two. */
+  splice(e, f) {
+    const afterE = this.nextAround[e];
+    const afterF = this.nextAround[f];
+    this.nextAround[e] = afterF;
+    this.nextAround[f] = afterE;
+    this.prevAround[afterF] = e;
+    this.prevAround[afterE] = f;
+  }
+
+  /** A new edge from the end of e to the origin of f, which have the same face on their left. */
+  connect(e, f) {
+    const made = this.makeEdge(this.destOf(e), this.originOf[f]);
+    this.splice(made, this.nextOfFace(e));
+    this.splice(made ^ 1, f);
+    return made;
+  }
+
+  deleteEdge(e) {
+    this.removeEnd(e);
+    this.removeEnd(e ^ 1);
+    this.freeEdges.push(e & ~1);
+  }
+
+  removeEnd(e) {
+    this.edgeFrom[this.originOf[e]] = this.nextAround[e];
+    this.splice(e, this.prevAround[e]);
+  }
+
+  // Divide and conquer
+
+  /**
+   * Triangulates the vertices from `start` to before `end`.
+   * @returns {[number, number]} the edge of the hull from its first vertex, with the hull on the
+   *   left, and that from its last vertex, with the hull on the right
+   */
+  divide(start, end) {
+    if (end - start === 2) return this.makeSegment(start);
+    if (end - start === 3) return this.makeTriangle(start);
+    const middle = (start + end) >> 1;
+    const earlier = this.divide(start, middle);
+    const later = this.divide(middle, end);
+    return this.merge(earlier, later);
+  }
+
+  makeSegment(v) {
+    const e = this.makeEdge(v, v + 1);
+    return [e, e ^ 1];
+  }
+
+  makeTriangle(v) {
+    const e = this.makeEdge(v, v + 1);
+    const f = this.makeEdge(v + 1, v + 2);
+    this.splice(e ^ 1, f);
+    const turn = cross(this.points, v, v + 1, v + 2);
+    if (turn === 0) return [e, f ^ 1];
+    const g = this.connect(f, e);
+    return turn > 0 ? [e, f ^ 1] : [g ^ 1, g];
+  }
+
+  merge([earlierOuter, earlierInner], [laterInner, laterOuter]) {
+    let base = this.connectHulls(earlierInner, laterInner);
+    if (this.destOf(base) === this.originOf[earlierOuter]) earlierOuter = base ^ 1;
+    if (this.originOf[base] === this.originOf[laterOuter]) laterOuter = base;
+    while (base >= 0) base = this.rise(base);
+    return [earlierOuter, laterOuter];
+  }
+
+  /** The lower common tangent, from the later vertices to the earlier ones. */
+  connectHulls(earlier, later) {
+    for (;;) {
+      if (this.isLeftOf(this.originOf[later], earlier)) earlier = this.nextOfFace(earlier);
+      else if (this.isRightOf(this.originOf[earlier], later)) later = this.nextAround[later ^ 1];
+      else return this.connect(later ^ 1, earlier);
+    }
+  }
+
+  /**
+   * Adds the triangle above an edge between the two sets.
+   * @returns {number} its upper edge between them, or -1 if the edge is the upper tangent
+   */
+  rise(base) {
+    const origin = this.originOf[base];
+    const dest = this.destOf(base);
+    const earlier = this.candidate(base, this.nextAround[base ^ 1], this.nextAround);
+    const later = this.candidate(base, this.prevAround[base], this.prevAround);
+    const hasEarlier = this.isRightOf(this.destOf(earlier), base);
+    const hasLater = this.isRightOf(this.destOf(later), base);
+    if (!hasEarlier && !hasLater) return -1;
+    const usesLater =
+      !hasEarlier ||
+      (hasLater &&
+        isInCircle(this.points, this.destOf(earlier), dest, origin, this.destOf(later)));
+    return usesLater ? this.connect(later, base ^ 1) : this.connect(base ^ 1, earlier ^ 1);
+  }
+
+  /** Deletes the edges, from e on in the order `after`, that the triangulation of all lacks. */
+  candidate(base, e, after) {
+    const origin = this.originOf[base];
+    const dest = this.destOf(base);
+    if (!this.isRightOf(this.destOf(e), base)) return e;
+    while (isInCircle(this.points, dest, origin, this.destOf(e), this.destOf(after[e]))) {
+      const following = after[e];
+      this.deleteEdge(e);
+      e = following;
+    }
+    return e;
+  }
+
+  // Removing a vertex
+
+  /** Removes a vertex that is no corner of the canvas; its neighbours stay triangulated. */
+  remove(v) {
+    const spokes = this.edgesAround(v);
+    // On the border of the canvas, begin behind the face outside.
+    const outside = spokes.findIndex((e) => !this.hasTriangle(e));
+    if (outside >= 0) spokes.push(...spokes.splice(0, outside + 1));
+    const firstSide = this.nextOfFace(spokes[0]);
+    const lastSide = this.nextOfFace(spokes[spokes.length - 2]);
+    for (const e of spokes) this.deleteEdge(e);
+    this.fill(outside >= 0 ? this.connect(lastSide, firstSide) : firstSide);
+  }
+
+  /** Triangulates the face on the left of an edge: the triangle at the edge, then what is left. */
+  fill(base) {
+    const afterBase = this.nextOfFace(base);
+    const beforeBase = this.prevOfFace(base);
+    if (this.nextOfFace(afterBase) === beforeBase) return;
+    const toApex = this.edgeToApex(base);
+    const fromApex = this.nextOfFace(toApex);
+    if (toApex !== afterBase) this.fill(this.connect(toApex, afterBase));
+    if (fromApex !== beforeBase) this.fill(this.connect(beforeBase, fromApex));
+  }
+
+  edgeToApex(base) {
+    const origin = this.originOf[base];
+    const dest = this.destOf(base);
+    let best = -1;
+    for (let e = this.nextOfFace(base); this.destOf(e) !== origin; e = this.nextOfFace(e)) {
+      const v = this.destOf(e);
+      if (!this.isLeftOf(v, base)) continue;
+      const apex = best < 0 ? -1 : this.destOf(best);
+      if (best < 0 || isInCircle(this.points, origin, dest, apex, v)) best = e;
+    }
+    return best;
+  }
+}

@@ -1,0 +1,80 @@
+/** The adaptive binary range decoder of section 5 of the specification. */
+
+import { check } from "./errors.js";
+
+const EVEN = 32768;
+const LEAST = 64;
+const MOST = 65472;
+const MOST_SEEN = 250;
+const SEEN_AT_START = 16;
+const BYTES_AHEAD = 4;
+
+/** A table of contexts: for each, the odds of a 1 in units of 2**-16 and how many bits it saw. */
+export class Contexts {
+  constructor(odds, seen) {
+    this.odds = odds;
+    this.seen = seen;
+  }
+
+  /** @param {number} n contexts that have seen nothing yet */
+  static even(n) {
+    return new Contexts(new Uint16Array(n).fill(EVEN), new Uint8Array(n));
+  }
+
+  /** @param {number[]} odds at the start, one for each context */
+  static preset(odds) {
+    return new Contexts(Uint16Array.from(odds), new Uint8Array(odds.length).fill(SEEN_AT_START));
+  }
+}
+
+export class RangeDecoder {
+  /** @param {Uint8Array} content of the chunk `M` */
+  constructor(content) {
+    this.content = content;
+    this.position = 0;
+    /** What is being decoded: the code of the error if the content ends. */
+    this.part = "positions";
+    // The range may be 2**32, so that both are doubles that hold integers.
+    this.range = 2 ** 32;
+    this.code = 0;
+    for (let i = 0; i < BYTES_AHEAD; i++) this.code = 256 * this.code + this.nextByte();
+  }
+
+  nextByte() {
+    const at = this.position++;
+    if (at < this.content.length) return this.content[at];
+    check(at < this.content.length + BYTES_AHEAD, this.part);
+    return 0;
+  }
+
+  /**
+   * @param {Contexts} contexts
+   * @param {number} i the context within the table
+   * @returns {0 | 1}
+   */
+  bit(contexts, i) {
+    const p = contexts.odds[i];
+    const n = contexts.seen[i];
+    const split = Math.floor(this.range / 4096) * (p >> 4);
+    const bit = this.code < split ? 1 : 0;
+    if (bit) {
+      this.range = split;
+    } else {
+      this.range -= split;
+      this.code -= split;
+    }
+    const moved = p + Math.floor((65536 * bit - p) / (n + 2));
+    contexts.odds[i] = Math.min(Math.max(moved, LEAST), MOST);
+    if (n < MOST_SEEN) contexts.seen[i] = n + 1;
+    while (this.range < 2 ** 24) {
+      this.range *= 256;
+      this.code = 256 * this.code + this.nextByte();
+    }
+    return bit;
+  }
+
+  /** Everything is decoded: no byte may be left. */
+  end() {
+    check(this.position >= this.content.length, this.part);
+  }
+}
