@@ -135,7 +135,7 @@ def report_sizes(printer: Printer, found: list[Sizes], n_pictures: int) -> None:
     printer.table(Table("Triangles of the same meshes", ("told by", *names), rows))
     verdict = judge(max(flips), TRIANGLES_TARGET)
     printer.paragraph(
-        f"Wanted of triangles that are told, at most {TRIANGLES_TARGET} bits per vertex: {verdict}. "
+        f"Wanted of told triangles, at most {TRIANGLES_TARGET} bits per vertex: {verdict}. "
         "A list is for meshes far from Delaunay."
     )
     rows = [("vmesh", *(f"{mean_total(found, density):.1f}" for density in DENSITIES))]

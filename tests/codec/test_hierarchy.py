@@ -63,9 +63,33 @@ def test_every_vertex_comes_once_and_after_its_parents(mesh: Mesh) -> None:
     check_hierarchy(hierarchy_of(vertices), vertices)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_the_order_is_that_of_independent_sets_taken_again_and_again(seed: int) -> None:
-    vertices = scattered(20, 17, 3 * seed, seed)
+def grid(columns: int, rows: int) -> Int32Array:
+    """All sites of a lattice: every circle holds four of them."""
+    y, x = np.mgrid[:rows, :columns]
+    return np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
+
+
+def crowded(columns: int, rows: int, n: int) -> Int32Array:
+    """Some sites of a lattice and its corners: many circles hold four of them."""
+    sites = grid(columns, rows)
+    is_taken = np.random.default_rng(n).permutation(len(sites)) < n
+    is_corner = ((sites == 0) | (sites == sites[-1])).all(axis=1)
+    chosen: Int32Array = sites[is_taken | is_corner]
+    return chosen
+
+
+TAKEN_APART = {
+    **{f"{3 * seed} scattered": scattered(20, 17, 3 * seed, seed) for seed in range(6)},
+    "crowded": crowded(9, 8, 40),
+    "grid": grid(6, 5),
+    "two rows": grid(16, 2),
+    "one column of pixels": grid(2, 15),
+}
+
+
+@pytest.mark.parametrize("name", TAKEN_APART)
+def test_the_order_is_that_of_independent_sets_taken_again_and_again(name: str) -> None:
+    vertices = TAKEN_APART[name]
     points = [(x, y) for x, y in vertices.tolist()]
     expected = twins.hierarchy(points, MAX_TRIANGLES)
     hierarchy = hierarchy_of(vertices)

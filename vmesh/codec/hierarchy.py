@@ -1,11 +1,11 @@
 """The order in which colours are coded: from a few far vertices to all, each between its parents.
 
 The finest vertices are an independent set of the Delaunay triangulation: each is surrounded by
-vertices that are coded before it, its parents. Without them the rest is triangulated anew, and the
-next set is taken, until a few are left::
+vertices that are coded before it, its parents. They are taken out of the triangulation, then the
+next set is, until the corners are left::
 
     o   .   o        . taken first, coded last; parents are the neighbours in that triangulation
-      o   o          o left: triangulated anew, thinned again, coded before
+      o   o          o left: without them, thinned again, coded before
     .   o   .
 
 Both sides know the positions before they code a colour, so the order costs nothing.
@@ -13,13 +13,14 @@ Both sides know the positions before they code a colour, so the order costs noth
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array
-from vmesh.kernels.delaunay import delaunay
-from vmesh.kernels.half_edges import independent_set
+from vmesh.kernels.delaunay import peel
+from vmesh.kernels.half_edges import find_twins
 
 MAX_TRIANGLES: Final = 8
 """A vertex of more triangles than this is not taken: it has to wait until there are fewer."""
@@ -52,30 +53,25 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
         Shape (n, 2), int32, in raster order, the corners of their bounding box among them.
     triangles : ndarray
         Shape (m, 3), int32: their canonical Delaunay triangles.
-
-    Raises
-    ------
-    LimitError
-        As :func:`delaunay`.
     """
     far = vertices.max(axis=0)
     is_corner = ((vertices == 0) | (vertices == far)).all(axis=1)
-    left = np.arange(len(vertices), dtype=np.int32)
-    orders: list[Int32Array] = []
-    counts: list[Int64Array] = []
-    parents: list[Int32Array] = []
-    while True:
-        taken, starts, neighbours = independent_set(triangles, is_corner[left], MAX_TRIANGLES)
-        if not len(taken):
-            break
-        orders.append(left[taken])
-        counts.append(np.diff(starts))
-        parents.append(left[neighbours])
-        left = np.delete(left, taken)
-        triangles = delaunay(vertices[left])
-    # Those that are never taken, the corners among them, have the one before as their parent.
-    orders.append(left)
-    counts.append(np.minimum(np.arange(len(left)), 1))
-    parents.append(left[:-1])
-    starts = np.concatenate([[0], np.cumsum(np.concatenate(counts[::-1]))])
-    return Hierarchy(np.concatenate(orders[::-1]), starts, np.concatenate(parents[::-1]))
+    taken, neighbours, counts, ends = peel(
+        vertices.astype(np.int64),
+        triangles.reshape(-1).copy(),
+        find_twins(triangles, len(vertices)),
+        is_corner,
+        MAX_TRIANGLES,
+    )
+    # The corners, each with the one before as its parent, then the layers, the last one first.
+    corners = np.flatnonzero(is_corner).astype(np.int32)
+    layers = [np.arange(a, b) for a, b in pairwise([0, *ends.tolist()])]
+    backwards = np.concatenate([np.zeros(0, dtype=np.int64), *layers[::-1]])
+    counts = counts[backwards]
+    is_parent = np.arange(neighbours.shape[1]) < counts[:, None]
+    starts = np.cumsum([0, 0, 1, 1, 1, *counts.tolist()])
+    return Hierarchy(
+        np.concatenate([corners, taken[backwards]]),
+        starts,
+        np.concatenate([corners[:-1], neighbours[backwards][is_parent]]),
+    )

@@ -27,16 +27,17 @@ order, so it is unique.
 References
 ----------
 D. A. Sinclair, "S-hull: a fast radial sweep-hull routine for Delaunay triangulation",
-arXiv:1604.01428, 2016. C. L. Lawson, "Software for C1 surface interpolation", 1977.
+arXiv:1604.01428, 2016. C. L. Lawson, "Software for C1 surface interpolation", 1977. O. Devillers,
+"On deletion in Delaunay triangulations", 1999.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from vmesh.arrays import Int32Array, Int64Array
+from vmesh.arrays import BoolArray, Int32Array, Int64Array
 from vmesh.errors import LimitError
-from vmesh.kernels.jit import kernel
+from vmesh.kernels.jit import inner_kernel, kernel
 
 FLIPS_PER_POINT = 64
 FLIPS = 1 << 20
@@ -366,6 +367,191 @@ def flip_to_delaunay(
                 size += 1
                 waiting[g] = True
     return count
+
+
+@inner_kernel
+def is_within(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
+    """Whether d is inside the circle of the positive triangle a, b, c, by the rule of `must_flip`.
+
+    That is, whether the triangle cannot be one of the canonical triangulation beside d.
+    """
+    # On the circle, d is across one of the edges, which it is on the outside of: turn it to b-c.
+    for _ in range(3):
+        bx, by = points[b, 0], points[b, 1]
+        if cross(bx, by, points[c, 0], points[c, 1], points[d, 0], points[d, 1]) < 0:
+            return must_flip(points, a, b, c, d)
+        a, b, c = b, c, a
+    return True
+
+
+@inner_kernel
+def collect_star(
+    origin: Int32Array, twin: Int32Array, start: int, star: Int32Array, most: int
+) -> tuple[int, int]:
+    """Half-edges that leave a vertex, in positive order, and how many triangles have it.
+
+    `start` is one of them. Returns the number of triangles and whether the vertex is inside, 1, or
+    on the border, 0; no triangles if there are more than `most`.
+    """
+    first = np.int64(start)
+    # On the border, turn back to the first triangle.
+    while twin[first] >= 0:
+        first = np.int64(twin[first])
+        first = first - 2 if first % 3 == 2 else first + 1
+        if first == start:
+            break
+    e = first
+    n = 0
+    while True:
+        if n == most:
+            return 0, 0
+        star[n] = e
+        n += 1
+        e = np.int64(twin[e + 2 if e % 3 == 0 else e - 1])
+        if e < 0:
+            return n, 0
+        if e == first:
+            return n, 1
+
+
+@inner_kernel
+def remove_vertex(
+    points: Int64Array,
+    origin: Int32Array,
+    twin: Int32Array,
+    leaving: Int32Array,
+    star: Int32Array,
+    n_triangles: int,
+    ring: Int32Array,
+    outer: Int32Array,
+    size: int,
+) -> None:
+    """Take a vertex out and fill the hole that is left with canonical Delaunay triangles.
+
+    Clips one ear after the other whose circle holds no other vertex of the rim: it is a triangle of
+    the result (Devillers). `ring` holds the rim, `outer` the half-edge across each of its sides, -1
+    where there is none; both are used up.
+    """
+    for n_left in range(size, 2, -1):
+        for i in range(n_left):
+            before, after = (i if i > 0 else n_left) - 1, i + 1 if i + 1 < n_left else 0
+            a, b, c = ring[before], ring[i], ring[after]
+            bx, by = points[b, 0], points[b, 1]
+            if cross(points[a, 0], points[a, 1], bx, by, points[c, 0], points[c, 1]) <= 0:
+                continue
+            is_ear = True
+            for k in range(n_left):
+                if k not in (before, i, after) and is_within(points, a, b, c, ring[k]):
+                    is_ear = False
+                    break
+            if is_ear:
+                break
+        t = 3 * (star[size - n_left] // 3)
+        origin[t], origin[t + 1], origin[t + 2] = a, b, c
+        leaving[a], leaving[b], leaving[c] = t, t + 1, t + 2
+        twin[t], twin[t + 1] = -1, -1
+        link(twin, t, outer[before])
+        link(twin, t + 1, outer[i])
+        if n_left == 3:
+            twin[t + 2] = -1
+            link(twin, t + 2, outer[after])
+        # The new side takes the place of the two that are covered.
+        outer[before] = t + 2
+        for k in range(i, n_left - 1):
+            ring[k] = ring[k + 1]
+            outer[k] = outer[k + 1]
+    for k in range(size - 2, n_triangles):
+        t = 3 * (star[k] // 3)
+        origin[t] = origin[t + 1] = origin[t + 2] = -1
+
+
+@kernel
+def peel(
+    points: Int64Array, origin: Int32Array, twin: Int32Array, kept: BoolArray, max_triangles: int
+) -> tuple[Int32Array, Int32Array, Int64Array, Int64Array]:
+    """Take independent vertices out of a triangulation, layer after layer, until none is left.
+
+    In each layer, in raster order, every vertex is taken that has no more than `max_triangles`
+    triangles and of whose neighbours none has been taken. What is left is the canonical Delaunay
+    triangulation of the vertices left.
+
+    Parameters
+    ----------
+    points : ndarray
+        Shape (n, 2), int64, in raster order.
+    origin, twin : ndarray
+        Shape (3 m,), int32: half-edges of the canonical Delaunay triangles; overwritten.
+    kept : ndarray
+        Shape (n,), bool: vertices that are not taken. Those that are left at the end must be the
+        corners of a rectangle that holds all others.
+
+    Returns
+    -------
+    taken : ndarray
+        Shape (k,), int32: layer after layer, each in raster order.
+    neighbours : ndarray
+        Shape (k, max_triangles + 1), int32: those of each when its layer was taken.
+    counts : ndarray
+        Shape (k,), int64: how many neighbours each has.
+    ends : ndarray
+        Where the layers end among those taken, int64.
+    """
+    n_points = points.shape[0]
+    leaving = np.full(n_points, -1, np.int32)
+    for e in range(origin.shape[0]):
+        leaving[origin[e]] = e
+    left = np.arange(n_points).astype(np.int32)
+    taken = np.empty(n_points, np.int32)
+    neighbours = np.empty((n_points, max_triangles + 1), np.int32)
+    counts = np.zeros(n_points, np.int64)
+    ends = np.empty(n_points, np.int64)
+    is_taken = np.zeros(n_points, np.bool_)
+    star = np.empty(max_triangles, np.int32)
+    ring, outer = np.empty(max_triangles + 1, np.int32), np.empty(max_triangles + 1, np.int32)
+    n_left, n_taken, n_layers, before = n_points, 0, 0, -1
+    while n_taken > before:
+        before = n_taken
+        for i in range(n_left):
+            v = left[i]
+            if kept[v]:
+                continue
+            n, inside = collect_star(origin, twin, leaving[v], star, max_triangles)
+            for k in range(n):
+                e = star[k]
+                neighbours[n_taken, k] = origin[e - 2 if e % 3 == 2 else e + 1]
+            size = n
+            if n > 0 and inside == 0:
+                e = star[n - 1]
+                neighbours[n_taken, n] = origin[e + 2 if e % 3 == 0 else e - 1]
+                size += 1
+            for k in range(size):
+                if is_taken[neighbours[n_taken, k]]:
+                    size = 0
+                    break
+            if size > 0:
+                taken[n_taken] = v
+                counts[n_taken] = size
+                is_taken[v] = True
+                n_taken += 1
+        for i in range(before, n_taken):
+            n, inside = collect_star(origin, twin, leaving[taken[i]], star, max_triangles)
+            for k in range(n):
+                e = star[k]
+                outer[k] = twin[e - 2 if e % 3 == 2 else e + 1]
+            outer[counts[i] - 1] = outer[counts[i] - 1] if inside == 1 else -1
+            for k in range(counts[i]):
+                ring[k] = neighbours[i, k]
+            remove_vertex(points, origin, twin, leaving, star, n, ring, outer, counts[i])
+        n_left = 0
+        for i in range(left.shape[0]):
+            if not is_taken[left[i]]:
+                left[n_left] = left[i]
+                n_left += 1
+        left = left[:n_left]
+        ends[n_layers] = n_taken
+        n_layers += 1
+    n_layers -= 1  # Nothing was taken in the last one.
+    return taken[:n_taken], neighbours[:n_taken], counts[:n_taken], ends[:n_layers]
 
 
 @kernel
