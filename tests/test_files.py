@@ -1,6 +1,10 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -97,3 +101,67 @@ def test_a_missing_folder_is_told_by_the_name_that_was_given(tmp_path: Path) -> 
     with pytest.raises(FileNotFoundError) as caught, atomic_output(target):
         pass
     assert caught.value.filename == str(target)
+
+
+def has_nameless_files(folder: Path) -> bool:
+    with suppress(AttributeError, OSError):
+        os.close(os.open(folder, os.O_TMPFILE | os.O_WRONLY))
+        return True
+    return False
+
+
+def test_a_killed_process_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
+    if not has_nameless_files(tmp_path):
+        pytest.skip("no files without names in this folder")
+    path = tmp_path / "picture.vmesh"
+    path.write_bytes(b"old")
+    script = (
+        "import sys, time\n"
+        "from vmesh.files import atomic_output\n"
+        "with atomic_output(sys.argv[1]) as stream:\n"
+        "    stream.write(b'half of the n')\n"
+        "    stream.flush()\n"
+        "    print('written', flush=True)\n"
+        "    time.sleep(60)\n"
+    )
+    command = [sys.executable, "-c", script, str(path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"written\n"
+        process.send_signal(signal.SIGKILL)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_full_disk_leaves_the_folder_as_it_was(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    path = tmp_path / "picture.vmesh"
+    path.write_bytes(b"old")
+    script = (
+        "import resource, signal, sys\n"
+        "from vmesh.files import atomic_output\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
+        "with atomic_output(sys.argv[1]) as stream:\n"
+        "    stream.write(bytes(100_000))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=False
+    )
+    assert resource
+    assert done.returncode == 1
+    assert "OSError" in done.stderr
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_without_nameless_files_nothing_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(os, "O_TMPFILE", raising=False)
+    path = tmp_path / "picture.vmesh"
+    with atomic_output(path) as stream:
+        stream.write(b"new")
+        assert len(list(tmp_path.iterdir())) == 1
+    assert path.read_bytes() == b"new"
+    assert list(tmp_path.iterdir()) == [path]

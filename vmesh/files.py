@@ -16,8 +16,8 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     """A binary file that takes its name only when the block ends without an error.
 
     What is written goes to a new file in the same folder, which is renamed at the end: an earlier
-    file of that name stays untouched until then, and a failed block leaves nothing behind. A
-    device or a pipe is written directly.
+    file of that name stays untouched until then, and a failed block leaves nothing behind; on Linux
+    a killed process does not either. A device or a pipe is written directly.
     """
     named = Path(path)
     if named.is_dir():
@@ -29,10 +29,14 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
     target = named.resolve()
     temporary = target.with_name(f".{secrets.token_hex(8)}.part")
     try:
-        with temporary.open("xb") as stream:
+        with _open_new(temporary) as stream:
             yield stream
             stream.flush()
             os.fsync(stream.fileno())
+            if not temporary.exists():
+                # The folder stands for none: it makes the link lead to the file itself.
+                opened = f"/proc/self/fd/{stream.fileno()}"
+                os.link(opened, temporary, src_dir_fd=stream.fileno())
         if target.exists():
             temporary.chmod(stat.S_IMODE(target.stat().st_mode))
         temporary.replace(target)
@@ -42,3 +46,14 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
         with suppress(OSError):
             temporary.unlink()
         raise
+
+
+def _open_new(path: Path) -> BinaryIO:
+    """A new file, without its name as yet where the system has files without names.
+
+    Nothing is left of such a file if the process is killed.
+    """
+    if hasattr(os, "O_TMPFILE"):
+        with suppress(OSError):  # The file system may have none.
+            return os.fdopen(os.open(path.parent, os.O_TMPFILE | os.O_WRONLY, 0o666), "wb")
+    return path.open("xb")
