@@ -19,6 +19,7 @@ from measurement import (
     Table,
     describe_machine,
     images_option,
+    import_optional,
     judge,
     load_photographs,
     markdown_option,
@@ -113,15 +114,13 @@ def report_sizes(printer: Printer, found: list[Sizes], n_pictures: int) -> None:
     printer.heading("Bits per vertex")
     rows = []
     for density in DENSITIES:
-        own = [sizes for sizes in found if sizes.density == density]
-        totals = [sum(sizes.parts.values()) for sizes in own]
         parts = [
-            mean(sizes.parts.get(name, 0.0) for sizes in own)
+            mean_part(found, density, name)
             for name in ("frame", "positions", "colors", "triangles")
         ]
-        target = TARGETS.get(density)
-        verdict = "" if target is None else judge(mean(totals), target)
-        figures = (f"{bits:.2f}" for bits in (*parts, mean(totals)))
+        total = mean_total(found, density)
+        verdict = judge(total, TARGETS[density]) if density in TARGETS else ""
+        figures = (f"{bits:.2f}" for bits in (*parts, total))
         rows.append((f"{density:.2%}", *figures, verdict))
     header = ("vertices per pixel", "frame", "positions", "colours", "triangles", "file", "target")
     printer.table(Table(f"By part: mean of {n_pictures} pictures", header, rows))
@@ -198,14 +197,6 @@ def available_coders() -> dict[str, Coder]:
     if import_optional("DracoPy") is not None:
         coders["Draco"] = code_with_draco
     return coders
-
-
-def import_optional(name: str) -> Any:
-    """A module, None if it is not installed."""
-    try:
-        return import_module(name)
-    except ImportError:
-        return None
 
 
 def planes(mesh: Mesh) -> list[npt.NDArray[np.int64]]:

@@ -7,13 +7,11 @@ import io
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
-from importlib import import_module
 from pathlib import Path
 from statistics import mean
-from types import ModuleType
-from typing import Any, Final
+from typing import Final
 
-from measurement import Photograph, Table
+from measurement import Photograph, Table, import_optional
 from PIL import Image
 from raster_codecs import Coded, available_codecs
 
@@ -77,7 +75,7 @@ def row_of(
 
 def ssimulacra2(original: UInt8Array, decoded: UInt8Array) -> float:
     """The perceptual measure SSIMULACRA2, at most 100; not a number without its package."""
-    module: Any = import_ssimulacra2()
+    module = import_optional("ssimulacra2")
     if module is None:
         return math.nan
     return float(module.compute_ssimulacra2(*map(as_file, (original, decoded))))
@@ -89,14 +87,6 @@ def as_file(pixels: UInt8Array) -> io.BytesIO:
     Image.fromarray(pixels).save(stream, "BMP")
     stream.seek(0)
     return stream
-
-
-def import_ssimulacra2() -> ModuleType | None:
-    """The module ssimulacra2, None if it is not installed."""
-    try:
-        return import_module("ssimulacra2")
-    except ImportError:
-        return None
 
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:

@@ -10,10 +10,11 @@ import textwrap
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from statistics import median
-from typing import Final
+from typing import Any, Final
 
 import click
 
@@ -166,6 +167,14 @@ def describe_machine() -> str:
     software = [f"Python {platform.python_version()}"]
     software += [f"{name} {version_of(name)}" for name in _PACKAGES]
     return f"{platform.machine()}, {cores} core{'s' * (cores != 1)}; {', '.join(software)}."
+
+
+def import_optional(name: str) -> Any:
+    """A module, None if it is not installed."""
+    try:
+        return import_module(name)
+    except ImportError:
+        return None
 
 
 def version_of(package: str) -> str:

@@ -7,12 +7,11 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from importlib import import_module
 from itertools import product
-from types import ModuleType
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from measurement import import_optional
 from PIL import Image, features
 
 from vmesh.arrays import UInt8Array
@@ -24,6 +23,7 @@ WEBP: Final = "WebP"
 JPEG2000: Final = "JPEG 2000"
 AVIF: Final = "AVIF"
 
+_MOZJPEG_MODULE: Final = "mozjpeg_lossless_optimization"
 _SUBSAMPLINGS: Final = ("4:2:0", "4:4:4")
 _JPEG_LEVELS: Final = range(1, 96)
 _WEBP_LEVELS: Final = range(257)  # twice as many as there are quantisers
@@ -143,7 +143,7 @@ def available_codecs() -> tuple[str, ...]:
         AVIF: features.check("avif"),
         WEBP: features.check("webp"),
         JPEG: features.check("jpg"),
-        MOZJPEG: _import_mozjpeg() is not None,
+        MOZJPEG: import_optional(_MOZJPEG_MODULE) is not None,
     }
     return tuple(name for name, found in needed.items() if found)
 
@@ -232,7 +232,7 @@ def _jpeg_encoders(image: Image.Image) -> Iterator[_Encoder]:
 
 
 def _mozjpeg_encoders(image: Image.Image) -> Iterator[_Encoder]:
-    mozjpeg: Any = _import_mozjpeg()
+    mozjpeg = import_optional(_MOZJPEG_MODULE)
     for subsampling in _SUBSAMPLINGS:
 
         def encode(image: Image.Image, level: int, subsampling: str = subsampling) -> bytes:
@@ -343,11 +343,3 @@ def _saved(image: Image.Image, format_name: str, **options: object) -> bytes:
 def _open(data: bytes) -> Image.Image:
     with Image.open(io.BytesIO(data)) as image:
         return image.convert("RGB")
-
-
-def _import_mozjpeg() -> ModuleType | None:
-    """The module mozjpeg_lossless_optimization, None if it is not installed."""
-    try:
-        return import_module("mozjpeg_lossless_optimization")
-    except ImportError:
-        return None

@@ -34,7 +34,7 @@ def atomic_output(path: str | os.PathLike[str]) -> Iterator[BinaryIO]:
             stream.flush()
             os.fsync(stream.fileno())
             if not temporary.exists():
-                # The folder stands for none: it makes the link lead to the file itself.
+                # Only with a descriptor does Python follow the path; which one does not matter.
                 opened = f"/proc/self/fd/{stream.fileno()}"
                 os.link(opened, temporary, src_dir_fd=stream.fileno())
         if target.exists():

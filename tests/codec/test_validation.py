@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -57,6 +59,14 @@ def test_what_is_beyond_a_limit_is_not_called_valid() -> None:
     data = dumps(samples.color())
     assert codes(validate(data, limits=Limits(max_vertices=10))) == ["limit"]
     assert codes(validate(data, limits=Limits(max_pixels=10))) == ["limit"]
+
+
+def test_metadata_that_are_too_much_together_are_not_called_valid() -> None:
+    header, (mesh,) = split(dumps(samples.grey()))
+    blocks = [(tag, zlib.compress(bytes(600))) for tag in (b"i", b"e")]
+    data = file_of(header, [*blocks, mesh])
+    assert codes(validate(data, limits=Limits(max_metadata=1000))) == ["limit"]
+    assert not validate(data, limits=Limits(max_metadata=1200))
 
 
 @given(st.integers(0, 2**32), st.sampled_from(["grey, flipped", "RGB, listed", "with metadata"]))

@@ -20,6 +20,7 @@ import numpy as np
 import vmesh
 from tests.codec.damage import file_of, split
 from tests.spec.recipes import DAMAGED, MESHES, VALID, flipped, mesh_of
+from vmesh.arrays import UInt8Array
 from vmesh.codec.layout import VERSION
 from vmesh.codec.text import mesh_text
 from vmesh.formats.pam import write_pam
@@ -58,10 +59,15 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
+def pam_bytes(pixels: UInt8Array) -> bytes:
+    """A PAM file of pixels."""
+    stream = io.BytesIO()
+    write_pam(pixels, stream)
+    return stream.getvalue()
+
+
 def expected(mesh: Mesh) -> dict[str, Any]:
     """What a decoder is to make of the file of a mesh."""
-    picture = io.BytesIO()
-    write_pam(render(mesh), picture)
     return {
         "width": mesh.width,
         "height": mesh.height,
@@ -69,7 +75,7 @@ def expected(mesh: Mesh) -> dict[str, Any]:
         "vertices": mesh.n_vertices,
         "triangles": mesh.n_triangles,
         "mesh_sha256": sha256(mesh_text(mesh).encode("ascii")),
-        "picture_sha256": sha256(picture.getvalue()),
+        "picture_sha256": sha256(pam_bytes(render(mesh))),
     }
 
 

@@ -17,8 +17,9 @@ from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from vmesh.arrays import Int32Array, Int64Array
+from vmesh.arrays import BoolArray, Int32Array, Int64Array
 from vmesh.kernels.delaunay import peel
 from vmesh.kernels.half_edges import find_twins
 
@@ -44,6 +45,12 @@ class Hierarchy(NamedTuple):
     parents: Int32Array
 
 
+def find_corners(vertices: Int32Array, far: npt.ArrayLike) -> BoolArray:
+    """Which of some vertices, (n, 2), are corners of the rectangle from (0, 0) to `far`; (n,)."""
+    result: BoolArray = ((vertices == 0) | (vertices == np.asarray(far))).all(axis=1)
+    return result
+
+
 def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
     """Order in which the colours of a mesh are coded.
 
@@ -54,8 +61,7 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
     triangles : ndarray
         Shape (m, 3), int32: their canonical Delaunay triangles.
     """
-    far = vertices.max(axis=0)
-    is_corner = ((vertices == 0) | (vertices == far)).all(axis=1)
+    is_corner = find_corners(vertices, vertices.max(axis=0))
     taken, neighbours, counts, ends = peel(
         vertices.astype(np.int64),
         triangles.reshape(-1).copy(),

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
+from vmesh.codec.hierarchy import Hierarchy, build_hierarchy, find_corners
 from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Chunk, Header
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
@@ -88,8 +88,8 @@ def decode_mesh(chunk: Chunk, header: Header) -> tuple[Mesh, dict[str, int]]:
     """
     decoder = Decoder(chunk.content, chunk.content_offset, is_whole=chunk.is_whole)
     vertices = decoder.positions(header.n_vertices, header.columns, header.rows)
-    is_corner = ((vertices == 0) | (vertices == [header.columns - 1, header.rows - 1])).all(axis=1)
-    if np.count_nonzero(is_corner) != 4:
+    far = (header.columns - 1, header.rows - 1)
+    if np.count_nonzero(find_corners(vertices, far)) != 4:
         raise FormatError("geometry", "a corner of the canvas is no vertex", chunk.content_offset)
     lattice = ColorLattice(header.steps)
     triangles = delaunay(vertices)

@@ -6,7 +6,7 @@ import warnings
 import zlib
 
 from vmesh.codec import layout
-from vmesh.codec.layout import Chunk
+from vmesh.codec.layout import Chunk, Header
 from vmesh.codec.payloads import decode_mesh
 from vmesh.errors import FormatError, PartialFileWarning
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -73,16 +73,22 @@ def measure(
         Bytes of ``positions``, of ``colors``, and of ``triangles`` if they are not implied. They
         share one stream: a byte on the bound between two parts belongs to one of them.
     """
-    header, chunks = layout.read_file(bytes(memoryview(data)), complain)
+    return read_chunks(*layout.read_file(bytes(memoryview(data)), complain), limits, complain)
+
+
+def read_chunks(
+    header: Header, chunks: list[Chunk], limits: Limits, complain: layout.Complain
+) -> tuple[Mesh, dict[str, int]]:
+    """Mesh of the header and the chunks of a file, and the bytes of its parts, as `measure`."""
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
     *ancillary, coded = chunks
-    metadata = _read_metadata(ancillary, limits)
+    metadata = _read_metadata(ancillary, limits, complain)
     mesh, sizes = decode_mesh(coded, header)
     return mesh.replaced(metadata=metadata), sizes
 
 
-def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
+def _read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain) -> Metadata:
     """ICC profile, EXIF, XMP and the ancillary chunks that are not known."""
     names = {tag: name for name, tag in layout.METADATA_TAGS.items()}
     known: dict[str, bytes] = {}
@@ -90,7 +96,11 @@ def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
     total = 0
     for chunk in chunks:
         if chunk.tag in names:
-            known[names[chunk.tag]] = block = inflate(chunk, limits)
+            try:
+                known[names[chunk.tag]] = block = _inflate(chunk, limits)
+            except FormatError as error:
+                complain(error)
+                continue
             total += len(block)
         else:
             unknown.append((chunk.tag, chunk.content))
@@ -99,7 +109,7 @@ def _read_metadata(chunks: list[Chunk], limits: Limits) -> Metadata:
     return Metadata(**known, unknown=tuple(unknown))
 
 
-def inflate(chunk: Chunk, limits: Limits) -> bytes:
+def _inflate(chunk: Chunk, limits: Limits) -> bytes:
     """Content of a known metadata chunk, inflated to no more than the limit."""
     inflater = zlib.decompressobj()
     try:

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from vmesh.codec import layout
-from vmesh.codec.payloads import decode_mesh
-from vmesh.codec.reader import inflate
+from vmesh.codec.reader import read_chunks
 from vmesh.errors import FormatError, LimitError
 from vmesh.limits import DEFAULT_LIMITS, Limits
 
@@ -70,23 +69,12 @@ def validate(
             found.append(finding)
 
     try:
-        header, (*ancillary, coded) = layout.read_file(bytes(memoryview(data)), complain)
-        limits.check_pixels(header.width, header.height)
-        limits.check_vertices(header.n_vertices)
-    except (FormatError, LimitError) as error:
-        complain(error)
-        return found
-    for chunk in ancillary:
-        if chunk.tag in layout.METADATA_TAGS.values():
-            try:
-                inflate(chunk, limits)
-            except (FormatError, LimitError) as error:
-                complain(error)
-        elif not chunk.is_critical:
-            text = f"ancillary chunk {chunk.tag.decode()} is unknown, and kept as it is"
-            found.append(Finding(Severity.NOTE, "unknown", text, chunk.offset))
-    try:
-        decode_mesh(coded, header)
+        header, chunks = layout.read_file(bytes(memoryview(data)), complain)
+        for chunk in chunks:
+            if not chunk.is_critical and chunk.tag not in layout.CHUNK_NAMES:
+                text = f"ancillary chunk {chunk.tag.decode()} is unknown, and kept as it is"
+                found.append(Finding(Severity.NOTE, "unknown", text, chunk.offset))
+        read_chunks(header, chunks, limits, complain)
     except (FormatError, LimitError) as error:
         complain(error)
     return found

@@ -385,13 +385,14 @@ def is_within(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
 
 
 @inner_kernel
-def collect_star(
-    origin: Int32Array, twin: Int32Array, start: int, star: Int32Array, most: int
+def collect_ring(
+    origin: Int32Array, twin: Int32Array, start: int, star: Int32Array, ring: Int32Array
 ) -> tuple[int, int]:
-    """Half-edges that leave a vertex, in positive order, and how many triangles have it.
+    """Neighbours of a vertex, into `ring`, and the half-edges that leave it, into `star`.
 
-    `start` is one of them. Returns the number of triangles and whether the vertex is inside, 1, or
-    on the border, 0; no triangles if there are more than `most`.
+    Both are in positive order, and `start` is one of the half-edges. Returns the number of
+    neighbours, 0 if there are more triangles than `star` holds, and the number of triangles, which
+    is one less on the border.
     """
     first = np.int64(start)
     # On the border, turn back to the first triangle.
@@ -403,15 +404,18 @@ def collect_star(
     e = first
     n = 0
     while True:
-        if n == most:
+        if n == star.shape[0]:
             return 0, 0
         star[n] = e
+        ring[n] = origin[e - 2 if e % 3 == 2 else e + 1]
         n += 1
-        e = np.int64(twin[e + 2 if e % 3 == 0 else e - 1])
+        arriving = e + 2 if e % 3 == 0 else e - 1
+        e = np.int64(twin[arriving])
         if e < 0:
-            return n, 0
+            ring[n] = origin[arriving]
+            return n + 1, n
         if e == first:
-            return n, 1
+            return n, n
 
 
 @inner_kernel
@@ -420,18 +424,22 @@ def remove_vertex(
     origin: Int32Array,
     twin: Int32Array,
     leaving: Int32Array,
+    v: int,
     star: Int32Array,
-    n_triangles: int,
     ring: Int32Array,
     outer: Int32Array,
-    size: int,
 ) -> None:
     """Take a vertex out and fill the hole that is left with canonical Delaunay triangles.
 
     Clips one ear after the other whose circle holds no other vertex of the rim: it is a triangle of
-    the result (Devillers). `ring` holds the rim, `outer` the half-edge across each of its sides, -1
-    where there is none; both are used up.
+    the result (Devillers). `star`, `ring` and `outer` are room to work in.
     """
+    size, n_triangles = collect_ring(origin, twin, leaving[v], star, ring)
+    # The half-edge across each side of the rim; on the border the last side has none.
+    outer[size - 1] = -1
+    for k in range(n_triangles):
+        e = star[k]
+        outer[k] = twin[e - 2 if e % 3 == 2 else e + 1]
     for n_left in range(size, 2, -1):
         for i in range(n_left):
             before, after = (i if i > 0 else n_left) - 1, i + 1 if i + 1 < n_left else 0
@@ -508,24 +516,16 @@ def peel(
     is_taken = np.zeros(n_points, np.bool_)
     star = np.empty(max_triangles, np.int32)
     ring, outer = np.empty(max_triangles + 1, np.int32), np.empty(max_triangles + 1, np.int32)
-    n_left, n_taken, n_layers, before = n_points, 0, 0, -1
+    n_taken, n_layers, before = 0, 0, -1
     while n_taken > before:
         before = n_taken
-        for i in range(n_left):
-            v = left[i]
+        for v in left:
             if kept[v]:
                 continue
-            n, inside = collect_star(origin, twin, leaving[v], star, max_triangles)
-            for k in range(n):
-                e = star[k]
-                neighbours[n_taken, k] = origin[e - 2 if e % 3 == 2 else e + 1]
-            size = n
-            if n > 0 and inside == 0:
-                e = star[n - 1]
-                neighbours[n_taken, n] = origin[e + 2 if e % 3 == 0 else e - 1]
-                size += 1
+            size, _ = collect_ring(origin, twin, leaving[v], star, ring)
             for k in range(size):
-                if is_taken[neighbours[n_taken, k]]:
+                neighbours[n_taken, k] = ring[k]
+                if is_taken[ring[k]]:
                     size = 0
                     break
             if size > 0:
@@ -534,20 +534,8 @@ def peel(
                 is_taken[v] = True
                 n_taken += 1
         for i in range(before, n_taken):
-            n, inside = collect_star(origin, twin, leaving[taken[i]], star, max_triangles)
-            for k in range(n):
-                e = star[k]
-                outer[k] = twin[e - 2 if e % 3 == 2 else e + 1]
-            outer[counts[i] - 1] = outer[counts[i] - 1] if inside == 1 else -1
-            for k in range(counts[i]):
-                ring[k] = neighbours[i, k]
-            remove_vertex(points, origin, twin, leaving, star, n, ring, outer, counts[i])
-        n_left = 0
-        for i in range(left.shape[0]):
-            if not is_taken[left[i]]:
-                left[n_left] = left[i]
-                n_left += 1
-        left = left[:n_left]
+            remove_vertex(points, origin, twin, leaving, taken[i], star, ring, outer)
+        left = left[~is_taken[left]]
         ends[n_layers] = n_taken
         n_layers += 1
     n_layers -= 1  # Nothing was taken in the last one.
