@@ -252,18 +252,90 @@ def star_error(
         corners = [(int(moved[u, 0]), int(moved[u, 1])) for u in face]
         if doubled_area(corners[0], corners[1], corners[2]) <= 0:
             return float("inf")
-    # The error is a parabola in the colour: three of its points tell all.
-    total = 0.0
+    return sum(
+        constant - slope * slope / (4 * (bend + ridge))
+        for constant, slope, bend in color_parabolas(moved, star, colors, image, v)
+    )
+
+
+def best_color(
+    points: Int64Array,
+    triangles: Iterable[Sequence[int]],
+    colors: Float64Array,
+    image: UInt8Array,
+    v: int,
+    ridge: float,
+) -> Float64Array:
+    """Colour of a vertex that leaves the least error; as :func:`star_error`."""
+    star = [face for face in triangles if v in face]
+    parabolas = color_parabolas(points, star, colors, image, v)
+    return np.array([-slope / (2 * (bend + ridge)) for _, slope, bend in parabolas])
+
+
+def color_parabolas(
+    points: Int64Array,
+    star: Sequence[Sequence[int]],
+    colors: Float64Array,
+    image: UInt8Array,
+    v: int,
+) -> list[tuple[float, float, float]]:
+    """The error as a parabola in each component of a vertex's colour, from three of its points."""
+    parabolas = []
     for z in range(image.shape[2]):
         values = []
         for color in (0.0, 1.0, 2.0):
             tried = colors[:, z : z + 1].copy()
             tried[v] = color
-            values.append(sum(triangle_errors(moved, star, tried, image[:, :, z : z + 1])))
+            values.append(sum(triangle_errors(points, star, tried, image[:, :, z : z + 1])))
         bend = (values[2] - 2 * values[1] + values[0]) / 2
-        slope = values[1] - values[0] - bend
-        total += values[0] - slope * slope / (4 * (bend + ridge))
-    return total
+        parabolas.append((values[0], values[1] - values[0] - bend, bend))
+    return parabolas
+
+
+def step_promises(
+    points: Int64Array,
+    triangles: Iterable[Sequence[int]],
+    colors: Float64Array,
+    image: UInt8Array,
+    v: int,
+    steps: Iterable[Point],
+) -> dict[Point, float]:
+    """What each step of a vertex would change the error by, were every pixel linear in it.
+
+    A step d changes a pixel of weight w, in a triangle of gradient g, by w (k - g d), where k is
+    the change of the vertex's colour, which is the best for each step.
+    """
+    height, width = image.shape[:2]
+    rows = []  # component, residual, weight, and weight times gradient
+    for face in triangles:
+        if v not in face:
+            continue
+        first = list(face).index(v)
+        own = [face[(first + i) % 3] for i in range(3)]
+        corners = [(int(points[u, 0]), int(points[u, 1])) for u in own]
+        sides = np.array([corners[1], corners[2]], dtype=float) - corners[0]
+        fine = [(128 * x, 128 * y) for x, y in corners]
+        for y, x in np.ndindex(height, width):
+            parts = pixel_weights(fine, x, y)
+            if parts is None:
+                continue
+            weights = np.array(parts) / sum(parts)
+            for z in range(image.shape[2]):
+                values = colors[own, z]
+                gradient = np.linalg.solve(sides, values[1:] - values[0])
+                residual = float(image[y, x, z]) - weights @ values
+                rows.append((z, residual, weights[0], *(weights[0] * gradient)))
+    table = np.array(rows)
+    promises = {}
+    for step in steps:
+        total = 0.0
+        for z in range(image.shape[2]):
+            _, residual, weight, slope_x, slope_y = table[table[:, 0] == z].T
+            moved = residual + slope_x * step[0] + slope_y * step[1]
+            change = (weight @ moved) / (weight @ weight)
+            total += float(((moved - weight * change) ** 2).sum() - (residual**2).sum())
+        promises[step] = total
+    return promises
 
 
 def independent_set(

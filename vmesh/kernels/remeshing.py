@@ -38,6 +38,12 @@ from vmesh.kernels.jit import inner_kernel, kernel
 MAX_RING = 48
 """A vertex with more neighbours than this is left as it is."""
 
+# A vertex steps at most this many pixels in each direction, to one of the places that promise most,
+# and then on from there.
+_REACH = 3
+_N_TRIES = 3
+_MAX_STEPS = 8
+
 # Columns of a row are found in floating point. They are fractions with denominators of at most
 # 2**18, so this bias decides on which side of an edge a pixel's centre lies without error.
 _BIAS = 1e-7
@@ -85,6 +91,8 @@ class Room(NamedTuple):
     ears: Int32Array
     rows: Int64Array
     sums: Float64Array
+    side_sums: Float64Array
+    promises: Float64Array
 
 
 def make_room(height: int, n_components: int) -> Room:
@@ -97,6 +105,8 @@ def make_room(height: int, n_components: int) -> Room:
         ears=np.zeros((MAX_RING, 3), np.int32),
         rows=np.zeros((height, 2), np.int64),
         sums=np.zeros(2 + n_components),
+        side_sums=np.zeros((MAX_RING, 2 + n_components)),
+        promises=np.zeros((2 * _REACH + 1, 2 * _REACH + 1)),
     )
 
 
@@ -271,7 +281,7 @@ def error_at(
 
     The star's rim is ``room.ring``, of which the first `n_sides` sides count; infinite if one of
     its triangles were not positive, or as soon as the error is more than `limit`. ``room.sums``
-    holds what the colour follows from.
+    holds what the colour follows from, ``room.side_sums`` the same of the sides up to each.
     """
     points, ring, sums = surface.points, room.ring, room.sums
     for i in range(n_sides):
@@ -284,6 +294,8 @@ def error_at(
     error = 0.0
     for i in range(n_sides):
         add_moments(surface, image, room, x, y, ring[i], ring[i + 1])
+        for z in range(sums.shape[0]):
+            room.side_sums[i, z] = sums[z]
         # The least error of some triangles is no more than that of all.
         error = sums[0]
         for z in range(image.shape[2]):
@@ -584,23 +596,18 @@ def worst_pixel(
 def best_insertion(
     surface: Surface, image: UInt8Array, room: Room, t: int
 ) -> tuple[float, int, int]:
-    """What a new vertex in triangle t would gain, and where: its middle or towards a side."""
+    """What a new vertex in triangle t would gain, and where: its middle or its worst pixel."""
     points, ring = surface.points, room.ring
     for i in range(4):
         ring[i] = surface.origin[3 * t + i % 3]
     best, best_x, best_y = -np.inf, 0, 0
-    for i in range(5):
-        x, y = 0, 0
-        if i == 4:
-            x, y = worst_pixel(surface, image, room, ring[0], ring[1], ring[2])
+    for i in range(2):
+        if i == 0:
+            # Sums of half pixels: the pixel's centre that is next to a third of them.
+            x = (points[ring[0], 0] + points[ring[1], 0] + points[ring[2], 0]) // 6 * 2 + 1
+            y = (points[ring[0], 1] + points[ring[1], 1] + points[ring[2], 1]) // 6 * 2 + 1
         else:
-            for k in range(3):
-                # Weights in twentieths: 7, 6, 7 in the middle; 2 for the corner across from a side.
-                share = (7 if k != 1 else 6) if i == 3 else (2 if k == i else 9)
-                x += share * points[ring[k], 0]
-                y += share * points[ring[k], 1]
-            # The pixel's centre.
-            x, y = x // 40 * 2 + 1, y // 40 * 2 + 1
+            x, y = worst_pixel(surface, image, room, ring[0], ring[1], ring[2])
         gain = surface.errors[t] - error_at(surface, image, room, x, y, 3, surface.errors[t] - best)
         if gain > best:
             best, best_x, best_y = gain, x, y
@@ -715,13 +722,101 @@ def insert(
 # --- Moving and flipping --------------------------------------------------------------------------
 
 
+@inner_kernel
+def may_step(x: int, dx: int, far: int) -> bool:
+    """Whether a coordinate may change: on the border not at all, elsewhere as far as the border."""
+    return dx == 0 or (0 < x < far and 0 < x + dx < far)
+
+
+@inner_kernel
+def promise(surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: int) -> None:
+    """What a step of vertex v would change the error of its star by, into ``room.promises``.
+
+    From the sums that :func:`error_at` left for the place where the vertex is. Where its triangles
+    have gradients g and a step d takes it away with its colour k, a pixel with weight w changes by
+    w (k' - g d). In squares, with the best change of the colour k', that is
+
+        2 b d + d H d,   b = sum of g (w r),   H = sum of ww g g - (sum of ww g)^2 / sum of ww,
+
+    a step of Gauss and Newton's method, of which any whole step is taken and not only the best:
+    the picture is not as smooth as that.
+    """
+    points, colors, ring, side_sums = surface.points, surface.colors, room.ring, room.side_sums
+    b_x = b_y = h_xx = h_xy = h_yy = 0.0
+    for z in range(colors.shape[1]):
+        color = colors[v, z]
+        mean_x = mean_y = 0.0
+        for i in range(n_sides):
+            a, b = ring[i], ring[i + 1]
+            ax, ay = points[a, 0] - points[v, 0], points[a, 1] - points[v, 1]
+            bx, by = points[b, 0] - points[v, 0], points[b, 1] - points[v, 1]
+            inverse = 1.0 / float(ax * by - ay * bx)
+            right = ((colors[a, z] - color) * by - (colors[b, z] - color) * ay) * inverse
+            down = ((colors[b, z] - color) * ax - (colors[a, z] - color) * bx) * inverse
+            weights, products = side_sums[i, 1], side_sums[i, 2 + z]
+            if i > 0:
+                weights -= side_sums[i - 1, 1]
+                products -= side_sums[i - 1, 2 + z]
+            products -= color * weights
+            b_x += products * right
+            b_y += products * down
+            h_xx += weights * right * right
+            h_xy += weights * right * down
+            h_yy += weights * down * down
+            mean_x += weights * right
+            mean_y += weights * down
+        share = 1.0 / (side_sums[n_sides - 1, 1] + _RIDGE)
+        h_xx -= mean_x * mean_x * share
+        h_xy -= mean_x * mean_y * share
+        h_yy -= mean_y * mean_y * share
+    width, height = 2 * image.shape[1], 2 * image.shape[0]
+    x, y = points[v, 0], points[v, 1]
+    for i in range(room.promises.shape[0]):
+        dy = 2 * (i - _REACH)
+        for k in range(room.promises.shape[1]):
+            dx = 2 * (k - _REACH)
+            room.promises[i, k] = np.inf
+            if may_step(x, dx, width) and may_step(y, dy, height):
+                change = 2.0 * (b_x * dx + b_y * dy)
+                change += h_xx * dx * dx + 2.0 * h_xy * dx * dy + h_yy * dy * dy
+                room.promises[i, k] = change
+    room.promises[_REACH, _REACH] = np.inf
+
+
+@inner_kernel
+def step(
+    surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: int, least: float
+) -> float:
+    """Move vertex v to the first better one of the places that promise most; the error there.
+
+    If none is better, the vertex stays and the error is `least`, what it was.
+    """
+    points, promises = surface.points, room.promises
+    promise(surface, image, room, v, n_sides)
+    for _ in range(_N_TRIES):
+        i, k = 0, 0
+        for row in range(promises.shape[0]):
+            for column in range(promises.shape[1]):
+                if promises[row, column] < promises[i, k]:
+                    i, k = row, column
+        if promises[i, k] == np.inf:
+            break
+        promises[i, k] = np.inf
+        x, y = points[v, 0] + 2 * (k - _REACH), points[v, 1] + 2 * (i - _REACH)
+        error = error_at(surface, image, room, x, y, n_sides, least - _LEAST_GAIN)
+        if error < np.inf:
+            points[v, 0], points[v, 1] = x, y
+            take_color(surface, room, v)
+            return error
+    return least
+
+
 @kernel
 def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
-    """Move each restless vertex to the best of its neighbouring pixels; how many moved.
+    """Move each restless vertex to better places nearby, step by step; how many moved.
 
-    Eight places at two pixels' distance are tried, then eight at one pixel's. The error of each is
-    that of the star in the best colour for it. Vertices on the border stay on their side, corners
-    where they are.
+    The error of a place is that of the star in the best colour for it. Vertices on the border stay
+    on their side, corners where they are.
     """
     points, leaving, restless = surface.points, surface.leaving, surface.restless
     right, bottom = 2 * image.shape[1], 2 * image.shape[0]
@@ -731,31 +826,20 @@ def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
             continue
         restless[v] = False
         x, y = points[v, 0], points[v, 1]
-        on_side, on_level = x in (0, right), y in (0, bottom)
-        if on_side and on_level:
+        if x in (0, right) and y in (0, bottom):
             continue
         size, n_sides = collect_ring(surface, room, v)
         if size < 3:
             continue
         least = error_at(surface, image, room, x, y, n_sides, np.inf)
         take_color(surface, room, v)
-        for step in (4, 2):
-            here_x, here_y = x, y
-            for i in range(9):
-                near_x, near_y = here_x + step * (i % 3 - 1), here_y + step * (i // 3 - 1)
-                if i == 4 or (on_side and near_x != x) or (on_level and near_y != y):
-                    continue
-                if not on_side and not 0 < near_x < right:
-                    continue
-                if not on_level and not 0 < near_y < bottom:
-                    continue
-                error = error_at(surface, image, room, near_x, near_y, n_sides, least)
-                if error < least - _LEAST_GAIN:
-                    least, x, y = error, near_x, near_y
-                    take_color(surface, room, v)
+        for _ in range(_MAX_STEPS):
+            error = step(surface, image, room, v, n_sides, least)
+            if error == least:
+                break
+            least = error
         if x != points[v, 0] or y != points[v, 1]:
             moved += 1
-            points[v, 0], points[v, 1] = x, y
             restless[v] = True
             for i in range(size):
                 restless[room.ring[i]] = True
