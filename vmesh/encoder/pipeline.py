@@ -14,7 +14,13 @@ from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
 from vmesh.encoder.drafts import SUBDIVISION, UNIT, Draft, Finisher, SampledDraft, price_of
 from vmesh.encoder.image import as_image, visible_planes, with_hidden_colors_replaced
-from vmesh.encoder.rate_control import guess_vertices, meet_psnr, meet_size, price_of_quality
+from vmesh.encoder.rate_control import (
+    guess_vertices,
+    meet_psnr,
+    meet_size,
+    price_of_quality,
+    refined_vertices,
+)
 from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
@@ -32,7 +38,7 @@ _EFFORTS: Final = {
     2: Effort(density=0.04, max_rounds=1, least_gain=0.0, share_decay=1.0),
     3: Effort(density=0.05, max_rounds=2, least_gain=0.0, share_decay=0.7),
     4: Effort(density=0.06, max_rounds=3, least_gain=0.0, share_decay=0.8),
-    5: Effort(density=0.06, max_rounds=16, least_gain=0.06, share_decay=0.85),
+    5: Effort(density=0.045, max_rounds=16, least_gain=0.06, share_decay=0.85),
     6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
     7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
     8: Effort(density=0.25, max_rounds=24, least_gain=0.004, share_decay=0.95),
@@ -89,9 +95,12 @@ def encode(
     if chosen.method == "blue-noise":
         return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
     report("sampling")
-    draft = _sampled_draft(image, chosen) if chosen.effort == 1 else _remesh(image, chosen, report)
-    report("colors")
     finisher = Finisher(image, metadata or Metadata(), chosen.color_step)
+    if chosen.effort == 1:
+        draft = _sampled_draft(image, chosen)
+    else:
+        draft = _remesh(image, chosen, finisher, report)
+    report("colors")
     if chosen.target_size is not None:
         return meet_size(draft, finisher, chosen.target_size, lambda: report("rate control"))
     if chosen.target_psnr is not None:
@@ -172,7 +181,7 @@ def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
     return draft
 
 
-def _remesh(image: UInt8Array, settings: Settings, report: Progress) -> Draft:
+def _remesh(image: UInt8Array, settings: Settings, finisher: Finisher, report: Progress) -> Draft:
     """The vertices of a dense sample that matter most, moved to better places."""
     height, width = image.shape[:2]
     effort = _EFFORTS[settings.effort]
@@ -190,7 +199,10 @@ def _remesh(image: UInt8Array, settings: Settings, report: Progress) -> Draft:
             break
         # There was too little to choose from.
         start = 2 * _LEAST_CHOICE * draft.n_vertices
-    draft.refine(draft.n_vertices, lambda: report("refinement"))
+    n_vertices = draft.n_vertices
+    if settings.target_size is not None:
+        n_vertices = refined_vertices(finisher.finish(draft), settings.target_size)
+    draft.refine(min(n_vertices, width * height), lambda: report("refinement"))
     return draft
 
 

@@ -139,13 +139,22 @@ class Remesher:
         report : callable
             Called after each round.
         """
-        share = _FIRST_SHARE
-        if n_vertices == self.n_vertices:
-            self._settle()
-            report()
+        self._settle()
+        report()
+        self._exchange_rounds(n_vertices, _FIRST_SHARE, report)
+
+    def resize(self, n_vertices: int) -> None:
+        """Change the number of vertices, as far as there is anything to gain from more."""
+        change = abs(n_vertices - self.n_vertices) / self.n_vertices
+        if change > _SMALL_CHANGE:
+            share = min(2 * change, _FIRST_SHARE)
+            self._exchange_rounds(n_vertices, share, lambda: None)
         else:
-            change = abs(n_vertices - self.n_vertices) / self.n_vertices
-            share = min(max(2 * change, _LEAST_SHARE), _FIRST_SHARE)
+            self._exchange(n_vertices, 0.0)
+            self._settle()
+
+    def _exchange_rounds(self, n_vertices: int, share: float, report: Callable[[], None]) -> None:
+        """Exchange vertices round by round, first this share of them, while that gains enough."""
         errors = []
         for _ in range(self._effort.max_rounds):
             self._exchange(n_vertices, share)
@@ -158,14 +167,6 @@ class Remesher:
                 1.0 - _PATIENCE * self._least_gain
             ):
                 break
-
-    def resize(self, n_vertices: int) -> None:
-        """Change the number of vertices, as far as there is anything to gain from more."""
-        if abs(n_vertices - self.n_vertices) > _SMALL_CHANGE * self.n_vertices:
-            self.refine(n_vertices, lambda: None)
-        else:
-            self._exchange(n_vertices, 0.0)
-            self._settle()
 
     def _exchange(self, n_vertices: int, share: float) -> None:
         """Remove the least useful vertices and insert others where they gain most."""
