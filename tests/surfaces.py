@@ -59,8 +59,14 @@ def open_surface(
         errors=np.zeros(len(triangles) + 2 * n_spare),
         restless=np.ones(len(vertices) + n_spare, dtype=bool),
     )
-    measure(surface, image, make_room(image.shape[0], image.shape[2]))
+    measure_all(surface, image)
     return surface
+
+
+def measure_all(surface: Surface, image: UInt8Array) -> float:
+    """Compute the errors of all triangles anew; their sum."""
+    measure(surface, image, make_room(image.shape[0], image.shape[2]), 0, len(surface.errors))
+    return float(surface.errors.sum())
 
 
 def triangles_of(surface: Surface) -> Int32Array:

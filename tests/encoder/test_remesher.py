@@ -13,12 +13,11 @@ from hypothesis import strategies as st
 
 from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
-from tests.surfaces import check_mesh, check_surface
+from tests.surfaces import check_mesh, check_surface, measure_all
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.encoder.pipeline import propose
 from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.settings import Settings
-from vmesh.kernels.remeshing import make_room, measure
 
 EFFORT = Effort(density=0.1, max_rounds=3, least_gain=0.0, share_decay=0.8)
 
@@ -34,13 +33,13 @@ def proposal(image: UInt8Array, n: int) -> Int32Array:
 
 def check(draft: Remesher, image: UInt8Array) -> None:
     """Check the surface behind a draft and what it says of itself."""
-    height, width, n_components = image.shape
+    height, width = image.shape[:2]
     surface = draft._surface
     check_surface(surface, width, height)
     assert draft.n_vertices == np.count_nonzero(surface.leaving >= 0)
     kept = surface.errors.copy()
     visible = draft._picture
-    measure(surface, visible, make_room(height, n_components))
+    measure_all(surface, visible)
     assert kept == pytest.approx(surface.errors, abs=1e-6)
 
 

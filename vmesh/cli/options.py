@@ -100,6 +100,12 @@ _ENCODER_OPTIONS = (
     click.option(
         "--seed", type=click.IntRange(0), default=0, show_default=True, help="Random seed."
     ),
+    click.option(
+        "-j",
+        "--threads",
+        type=click.IntRange(1),
+        help="Most threads at once; the result does not depend on it.",
+    ),
 )
 
 

@@ -25,6 +25,7 @@ from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
+from vmesh.encoder.waves import Run, workers
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
@@ -96,16 +97,13 @@ def encode(
         return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
     report("sampling")
     finisher = Finisher(image, metadata or Metadata(), chosen.color_step)
-    if chosen.effort == 1:
-        draft = _sampled_draft(image, chosen)
-    else:
-        draft = _remesh(image, chosen, finisher, report)
-    report("colors")
-    if chosen.target_size is not None:
-        return meet_size(draft, finisher, chosen.target_size, lambda: report("rate control"))
-    if chosen.target_psnr is not None:
-        return meet_psnr(draft, finisher, chosen.target_psnr, lambda: report("rate control"))
-    return finisher.finish(draft)
+    with workers(chosen.threads) as run:
+        if chosen.effort == 1:
+            draft = _sampled_draft(image, chosen)
+        else:
+            draft = _remesh(image, chosen, finisher, report, run)
+        report("colors")
+        return _meet_goal(draft, finisher, chosen, lambda: report("rate control"))
 
 
 def count_steps(settings: Settings) -> int:
@@ -181,7 +179,9 @@ def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
     return draft
 
 
-def _remesh(image: UInt8Array, settings: Settings, finisher: Finisher, report: Progress) -> Draft:
+def _remesh(
+    image: UInt8Array, settings: Settings, finisher: Finisher, report: Progress, run: Run
+) -> Draft:
     """The vertices of a dense sample that matter most, moved to better places."""
     height, width = image.shape[:2]
     effort = _EFFORTS[settings.effort]
@@ -192,7 +192,7 @@ def _remesh(image: UInt8Array, settings: Settings, finisher: Finisher, report: P
     while True:
         start = max(4, min(start, width * height))
         _, samples = propose(image, _with_vertices(settings, start))
-        draft = Remesher(image, samples.vertices(), effort)
+        draft = Remesher(image, samples.vertices(), effort, run)
         n_start = draft.n_vertices
         _thin(draft, settings, wanted, lambda: report("thinning"))
         if _LEAST_CHOICE * draft.n_vertices <= n_start or start >= width * height:
@@ -218,6 +218,17 @@ def _thin(
     else:
         price = price_of_quality(_quality(settings))
         draft.thin(4, report, max_cost=_VERTEX_BITS * price)
+
+
+def _meet_goal(
+    draft: Draft, finisher: Finisher, settings: Settings, report: Callable[[], None]
+) -> Mesh:
+    """Mesh of a draft, resized where the settings ask for a size or a PSNR."""
+    if settings.target_size is not None:
+        return meet_size(draft, finisher, settings.target_size, report)
+    if settings.target_psnr is not None:
+        return meet_psnr(draft, finisher, settings.target_psnr, report)
+    return finisher.finish(draft)
 
 
 def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:

@@ -12,9 +12,11 @@ from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.drafts import UNIT, price_of
 from vmesh.encoder.image import visible_planes
+from vmesh.encoder.waves import Run, run_here, shares, waves
 from vmesh.kernels.delaunay import delaunay, sort_triangles
 from vmesh.kernels.half_edges import find_twins
 from vmesh.kernels.remeshing import (
+    Room,
     Surface,
     flip_edges,
     insert,
@@ -23,6 +25,7 @@ from vmesh.kernels.remeshing import (
     propose_insertions,
     relocate,
     thin,
+    weigh,
 )
 from vmesh.mesh import raster_keys
 
@@ -76,17 +79,22 @@ class Remesher:
         Shape (n, 2), int32, in half pixels, in raster order, the corners of the picture among them.
     effort : Effort
         How long the mesh is refined.
+    run : callable
+        Runs the jobs that do not depend on each other.
     """
 
-    def __init__(self, image: UInt8Array, vertices: Int32Array, effort: Effort) -> None:
+    def __init__(
+        self, image: UInt8Array, vertices: Int32Array, effort: Effort, run: Run = run_here
+    ) -> None:
         self._effort = effort
+        self._run = run
         self._random = np.random.default_rng(0)
         # A round takes little time on a small picture, so it may gain little.
         self._least_gain = effort.least_gain * min(1.0, image.shape[0] * image.shape[1] / 2**18)
         # Colours count as much as they can be seen: all components, alpha among them, alike.
         self._picture = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
         self._weights = np.ones(image.shape[:2])
-        self._room = make_room(image.shape[0], image.shape[2])
+        self._room = self._make_room()
         colors = sample_colors(self._picture, vertices, UNIT)
         self._surface = _open_surface(vertices.astype(np.int64), colors, delaunay(vertices), 0)
         self.n_vertices = len(vertices)
@@ -179,7 +187,7 @@ class Remesher:
 
     def _settle(self) -> None:
         """Move vertices and flip edges to where the error is least."""
-        relocate(self._surface, self._picture, self._room)
+        self._relocate()
         charge = _FLIP_BITS * price_of(self)
         flip_edges(self._surface, self._picture, self._room, charge)
         self._refit()
@@ -197,26 +205,36 @@ class Remesher:
 
         The cost of each is multiplied by up to 1 + `chance`.
         """
-        factors = 1.0 + chance * self._random.random(len(self._surface.points))
-        removed = thin(self._surface, self._picture, self._room, factors, n_remove, max_cost)
+        surface, picture = self._surface, self._picture
+        costs = np.empty(len(surface.points))
+        self._share_out(
+            len(costs),
+            lambda room, first, last: weigh(surface, picture, room, first, last, costs),
+        )
+        factors = 1.0 + chance * self._random.random(len(costs))
+        removed = thin(surface, picture, self._room, costs, factors, n_remove, max_cost)
         self.n_vertices -= removed
         return removed
 
     def _insert(self, n_insert: int) -> None:
         """Insert vertices where they gain most; where they gain nothing only if they have to be."""
-        gains = np.full(len(self._surface.errors), np.nan)
+        surface, picture = self._surface, self._picture
+        gains = np.full(len(surface.errors), np.nan)
         places = np.zeros((len(gains), 2), dtype=np.int64)
         for least_gain in (0.0, -np.inf):
             # No two go side by side at once: the next call sees what this one changed.
             for _ in range(_INSERTION_PASSES):
                 if n_insert <= 0:
                     break
-                propose_insertions(self._surface, self._picture, self._room, gains, places)
+                self._share_out(
+                    len(gains),
+                    lambda room, first, last: propose_insertions(
+                        surface, picture, room, first, last, gains, places
+                    ),
+                )
                 order = np.argsort(-gains, kind="stable")
                 useful = order[gains[order] > least_gain]
-                inserted = insert(
-                    self._surface, self._picture, self._room, useful, gains, places, n_insert
-                )
+                inserted = insert(surface, picture, self._room, useful, gains, places, n_insert)
                 if inserted == 0:
                     break
                 n_insert -= inserted
@@ -235,7 +253,24 @@ class Remesher:
             UNIT,
             surface.colors,
         )
-        self.error = measure(surface, self._picture, self._room)
+        self._share_out(
+            len(surface.errors),
+            lambda room, first, last: measure(surface, self._picture, room, first, last),
+        )
+        self.error = float(surface.errors.sum())
+
+    def _relocate(self) -> None:
+        """Move all vertices that something changed around to better places."""
+        surface, picture = self._surface, self._picture
+        for groups in waves(surface.points, surface.origin.reshape(-1, 3)):
+            self._run(lambda group: relocate(surface, picture, self._make_room(), group), groups)
+
+    def _share_out(self, n_items: int, job: Callable[[Room, int, int], None]) -> None:
+        """Do a job for all items; it is called with each share of them, and room of its own."""
+        self._run(lambda share: job(self._make_room(), *share), shares(n_items))
+
+    def _make_room(self) -> Room:
+        return make_room(self._picture.shape[0], self._picture.shape[2])
 
     def _compact(self, n_spare: int) -> None:
         """Drop what is not in use, and make room for some more vertices."""

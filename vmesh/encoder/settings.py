@@ -66,6 +66,9 @@ class Settings:
         steps follow from it. It follows from the error unless given.
     seed : int
         Start of the random thresholds.
+    threads : int, optional
+        Most threads at once, of which the mesh does not depend; as many as there are processors
+        unless given.
     """
 
     method: Method = "adaptive"
@@ -81,6 +84,7 @@ class Settings:
     colors: ColorMode = "fitted"
     color_step: int | None = None
     seed: int = 0
+    threads: int | None = None
 
     def __post_init__(self) -> None:
         for name, choices in _CHOICES.items():
@@ -89,7 +93,15 @@ class Settings:
                     f"expected {name} to be one of {', '.join(choices)}, "
                     f"got {getattr(self, name)!r}"
                 )
-        for name in ("quality", "target_size", "vertices", "effort", "color_step", "seed"):
+        for name in (
+            "quality",
+            "target_size",
+            "vertices",
+            "effort",
+            "color_step",
+            "seed",
+            "threads",
+        ):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, index(getattr(self, name)))
         self._check_ranges()
@@ -114,6 +126,8 @@ class Settings:
             raise ValueError(f"expected an effort of 1 to {MAX_EFFORT}, got {self.effort}")
         if self.color_step is not None and not 1 <= self.color_step <= MAX_STEP:
             raise ValueError(f"expected a color step of 1 to {MAX_STEP}, got {self.color_step}")
+        if self.threads is not None and self.threads < 1:
+            raise ValueError(f"expected 1 thread or more, got {self.threads}")
         if self.seed < 0:
             raise ValueError(f"expected a seed of 0 or more, got {self.seed}")
 

@@ -314,14 +314,11 @@ def take_color(surface: Surface, room: Room, v: int) -> None:
 
 
 @kernel
-def measure(surface: Surface, image: UInt8Array, room: Room) -> float:
-    """Compute the error of every triangle anew; their sum."""
-    total = 0.0
-    for t in range(surface.errors.shape[0]):
+def measure(surface: Surface, image: UInt8Array, room: Room, first: int, last: int) -> None:
+    """Compute the errors of the triangles from `first` up to `last`, excluded, anew."""
+    for t in range(first, last):
         a, b, c = surface.origin[3 * t], surface.origin[3 * t + 1], surface.origin[3 * t + 2]
         surface.errors[t] = triangle_error(surface, image, room, a, b, c) if a >= 0 else 0.0
-        total += surface.errors[t]
-    return total
 
 
 # --- Half-edges -----------------------------------------------------------------------------------
@@ -500,10 +497,22 @@ def sift(heap: Int32Array, place: Int32Array, costs: Float64Array, size: int, at
 
 
 @kernel
+def weigh(
+    surface: Surface, image: UInt8Array, room: Room, first: int, last: int, costs: Float64Array
+) -> None:
+    """Costs of removing the vertices from `first` up to `last`, which is excluded."""
+    for v in range(first, last):
+        costs[v] = np.inf
+        if surface.leaving[v] >= 0:
+            costs[v] = removal_cost(surface, image, room, v)
+
+
+@kernel
 def thin(
     surface: Surface,
     image: UInt8Array,
     room: Room,
+    costs: Float64Array,
     factors: Float64Array,
     n_remove: int,
     max_cost: float,
@@ -520,6 +529,8 @@ def thin(
     image : ndarray
         Shape (h, w, c), uint8.
     room : Room
+    costs : ndarray
+        Shape (n,), float64: as :func:`weigh` finds them; changed.
     factors : ndarray
         Shape (n,), float64: what the cost of each vertex is multiplied by.
     n_remove : int
@@ -528,14 +539,13 @@ def thin(
         Vertices that cost more than this squared error stay.
     """
     n_points = surface.points.shape[0]
-    costs = np.empty(n_points)
     heap = np.empty(n_points, np.int32)
     place = np.empty(n_points, np.int32)
     outdated = np.zeros(n_points, np.bool_)
     left = 0
     for v in range(n_points):
         if surface.leaving[v] >= 0:
-            costs[v] = factors[v] * removal_cost(surface, image, room, v)
+            costs[v] *= factors[v]
             heap[left] = v
             place[v] = left
             left += 1
@@ -634,9 +644,15 @@ def split(
 
 @kernel
 def propose_insertions(
-    surface: Surface, image: UInt8Array, room: Room, gains: Float64Array, places: Int64Array
+    surface: Surface,
+    image: UInt8Array,
+    room: Room,
+    first: int,
+    last: int,
+    gains: Float64Array,
+    places: Int64Array,
 ) -> None:
-    """What a new vertex would gain in each triangle, and where, if that is not known yet.
+    """What a new vertex would gain in each of some triangles, and where, if it is not known yet.
 
     Parameters
     ----------
@@ -644,12 +660,14 @@ def propose_insertions(
     image : ndarray
         Shape (h, w, c), uint8.
     room : Room
+    first, last : int
+        The triangles: `last` is excluded.
     gains : ndarray
         Shape (m,), float64: NaN where it is not known; minus infinity for what is not in use.
     places : ndarray
         Shape (m, 2), int64.
     """
-    for t in range(surface.errors.shape[0]):
+    for t in range(first, last):
         if surface.origin[3 * t] < 0:
             gains[t] = -np.inf
         elif math.isnan(gains[t]):
@@ -812,16 +830,18 @@ def step(
 
 
 @kernel
-def relocate(surface: Surface, image: UInt8Array, room: Room) -> int:
-    """Move each restless vertex to better places nearby, step by step; how many moved.
+def relocate(surface: Surface, image: UInt8Array, room: Room, vertices: Int64Array) -> int:
+    """Move each restless vertex of some to better places nearby, step by step; how many moved.
 
     The error of a place is that of the star in the best colour for it. Vertices on the border stay
-    on their side, corners where they are.
+    on their side, corners where they are. Of what is around a vertex its triangles' errors are
+    written, and that the neighbours are restless; so vertices without a common edge can be moved
+    at the same time.
     """
     points, leaving, restless = surface.points, surface.leaving, surface.restless
     right, bottom = 2 * image.shape[1], 2 * image.shape[0]
     moved = 0
-    for v in range(points.shape[0]):
+    for v in vertices:
         if leaving[v] < 0 or not restless[v]:
             continue
         restless[v] = False
