@@ -23,6 +23,7 @@ from tests.codec.mutants import mutants
 from tests.codec.trial import try_file
 
 _N_SLOWEST: Final = 5
+_BROKEN: Final = "BROKEN"
 
 
 @click.command()
@@ -49,30 +50,31 @@ def main(runs: int, seed: int, keep: Path, by_coverage: bool) -> None:
 def run(runs: int, seed: int, keep: Path) -> int:
     """Try files and print a report; the exit status."""
     codes: Counter[str] = Counter()
-    slowest: list[tuple[float, bytes, str]] = []
-    n_broken = 0
+    slowest: list[tuple[float, int, str]] = []
     began = time.perf_counter()
-    for data, is_partial in mutants(runs, seed):
+    for number, (data, is_partial) in enumerate(mutants(runs, seed)):
         start = time.perf_counter()
         try:
             code = try_file(data, allow_partial=is_partial).code
         except Exception:
-            code = "BROKEN"
-            n_broken += 1
-            path = keep / f"{seed}-{n_broken}{'-partial' if is_partial else ''}.vmesh"
-            keep.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-            click.echo(f"{path}:\n{traceback.format_exc()}", err=True)
-        codes[f"{code}, partial" if is_partial else code] += 1
-        slowest.append((time.perf_counter() - start, data, code))
-        slowest = sorted(slowest, key=lambda entry: -entry[0])[:_N_SLOWEST]
+            code = _BROKEN
+            _keep(data, keep / f"{seed}-{number}{'-partial' if is_partial else ''}.vmesh")
+        codes[code] += 1
+        slowest = sorted([*slowest, (time.perf_counter() - start, len(data), code)])[-_N_SLOWEST:]
     taken = time.perf_counter() - began
-    click.echo(f"{runs} files, seed {seed}: {runs / taken:.0f} a second, {n_broken} broken")
+    click.echo(f"{runs} files, seed {seed}: {runs / taken:.0f} a second, {codes[_BROKEN]} broken")
     for code, count in codes.most_common():
-        click.echo(f"{code:24}{count:9}  {count / runs:7.2%}")
-    for seconds, data, code in slowest:
-        click.echo(f"{1000 * seconds:8.1f} ms  {len(data)} bytes, {code}")
-    return 1 if n_broken else 0
+        click.echo(f"{code:12}{count:9}  {count / runs:7.2%}")
+    for seconds, n_bytes, code in reversed(slowest):
+        click.echo(f"{1000 * seconds:8.1f} ms  {n_bytes} bytes, {code}")
+    return 1 if codes[_BROKEN] else 0
+
+
+def _keep(data: bytes, path: Path) -> None:
+    """Store a file that broke a promise, and say which."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+    click.echo(f"{path}:\n{traceback.format_exc()}", err=True)
 
 
 def run_atheris(runs: int, seed: int, keep: Path) -> int:
