@@ -12,6 +12,9 @@ MAX_SUBDIVISION: Final = 8
 # With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
 MAX_LATTICE_SIDE: Final = 1 << 19
 
+# So many vertices are read from a file of any length: it takes a fifth of a second.
+FREE_VERTICES: Final = 1 << 16
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -23,16 +26,24 @@ class Limits:
         Pixels of a canvas, of a photograph and of a raster that is asked for.
     max_vertices : int
         Vertices of a mesh.
+    max_vertices_per_byte : int
+        Vertices for each byte of the coded mesh, beyond the first 65,536 vertices: a million that
+        agree in everything fit 200 bytes. Photographs take a byte or two for each vertex.
     max_metadata : int
         Bytes of all metadata together, after inflation.
     max_work : int
         Rows of all triangles plus pixels that one rendering may visit.
+    max_rows : int
+        Rows of all triangles that one rendering may visit, beyond one for each of its pixels:
+        slivers that span the canvas make them many where pixels are few.
     """
 
     max_pixels: int = 1 << 28
     max_vertices: int = 1 << 22
+    max_vertices_per_byte: int = 8
     max_metadata: int = 1 << 24
     max_work: int = 1 << 31
+    max_rows: int = 1 << 26
 
     def check_pixels(self, width: int, height: int) -> None:
         """Raise :class:`LimitError` if a raster of this size is not allowed."""
@@ -49,6 +60,14 @@ class Limits:
                 f"the mesh has {n_vertices} vertices, but the limit is {self.max_vertices}"
             )
 
+    def check_density(self, n_vertices: int, n_bytes: int) -> None:
+        """Raise :class:`LimitError` if so few bytes may not hold this many vertices."""
+        if n_vertices > FREE_VERTICES + self.max_vertices_per_byte * n_bytes:
+            raise LimitError(
+                f"the mesh has {n_vertices} vertices in {n_bytes} bytes, but the limit is "
+                f"{self.max_vertices_per_byte} vertices per byte beyond the first {FREE_VERTICES}"
+            )
+
     def check_metadata(self, n_bytes: int) -> None:
         """Raise :class:`LimitError` if this many bytes of metadata are not allowed."""
         if n_bytes > self.max_metadata:
@@ -56,11 +75,17 @@ class Limits:
                 f"the metadata inflate to more than the limit of {self.max_metadata} bytes"
             )
 
-    def check_work(self, work: int) -> None:
+    def check_work(self, n_rows: int, n_pixels: int) -> None:
         """Raise :class:`LimitError` if a rendering may not visit this much."""
-        if work > self.max_work:
+        if n_rows + n_pixels > self.max_work:
             raise LimitError(
-                f"rendering would visit {work} rows and pixels, but the limit is {self.max_work}"
+                f"rendering would visit {n_rows + n_pixels} rows and pixels, "
+                f"but the limit is {self.max_work}"
+            )
+        if n_rows > self.max_rows + n_pixels:
+            raise LimitError(
+                f"rendering {n_pixels} pixels would visit {n_rows} rows of triangles, "
+                f"but the limit is {self.max_rows} more than the pixels"
             )
 
 

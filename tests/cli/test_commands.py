@@ -342,6 +342,15 @@ def test_an_image_with_too_many_pixels_is_told(tmp_path: Path) -> None:
     assert "limit" in text
 
 
+@pytest.mark.parametrize("command", [["info", "--parts"], ["validate"]])
+def test_more_vertices_for_a_byte_are_read_if_that_is_allowed(command: list[str]) -> None:
+    bomb = Path(__file__).parents[2] / "spec" / "conformance" / "valid" / "a-count-bomb.vmesh"
+    failed = run(*command, bomb)
+    assert failed.returncode == 1
+    assert b"vertices per byte" in failed.stdout + failed.stderr
+    succeed(*command, bomb, "--max-vertices-per-byte", "5000")
+
+
 def test_an_unwritable_output_is_told(tmp_path: Path) -> None:
     text = fail(1, "encode", CHELSEA, tmp_path / "none" / "out.vmesh", "--vertices", "100")
     assert "No such file" in text

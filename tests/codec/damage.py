@@ -105,7 +105,8 @@ def mutant(data: bytes, random: np.random.Generator) -> bytes:
     header, contents = split(data)
     blocks = [(b"", header), *contents]
     for _ in range(random.integers(1, 4)):
-        at = int(random.integers(len(blocks)))
+        # The mesh is the last block, and has most to go wrong in.
+        at = int(random.integers(len(blocks))) if random.integers(2) else len(blocks) - 1
         tag, content = blocks[at]
         changed = bytearray(content)
         place = int(random.integers(len(changed) + 1))

@@ -19,7 +19,16 @@ import numpy as np
 
 import vmesh
 from tests.codec.damage import file_of, split
-from tests.spec.recipes import DAMAGED, MESHES, VALID, flipped, mesh_of
+from tests.spec.recipes import (
+    DAMAGED,
+    MESHES,
+    VALID,
+    count_bomb,
+    flipped,
+    largest_canvas,
+    mesh_of,
+    slivers,
+)
 from vmesh.arrays import UInt8Array
 from vmesh.codec.layout import VERSION
 from vmesh.codec.text import mesh_text
@@ -54,6 +63,21 @@ def metadata_bomb() -> bytes:
     return file_of(header, [(b"i", bomb), chunks[-1]])
 
 
+def bombs() -> dict[str, tuple[Mesh, bytes, bool]]:
+    """Small files that ask for a lot: mesh, file, and whether its picture takes no limits to draw.
+
+    A reader may refuse them by its limits. That a file asks for the same area to be drawn over and
+    over is not among them: it cannot be expressed by a valid one.
+    """
+    count, fans, canvas = count_bomb(), slivers(), largest_canvas()
+    return {
+        "a profile of 64 MiB": (vmesh.loads(VALID), metadata_bomb(), True),
+        "a count bomb": (count, vmesh.dumps(count), True),
+        "slivers": (fans, vmesh.dumps(fans), False),
+        "the largest canvas": (canvas, vmesh.dumps(canvas), False),
+    }
+
+
 def sha256(data: bytes) -> str:
     """The SHA-256 of some bytes, in hexadecimal digits."""
     return hashlib.sha256(data).hexdigest()
@@ -66,17 +90,19 @@ def pam_bytes(pixels: UInt8Array) -> bytes:
     return stream.getvalue()
 
 
-def expected(mesh: Mesh) -> dict[str, Any]:
-    """What a decoder is to make of the file of a mesh."""
-    return {
+def expected(mesh: Mesh, *, drawn: bool = True) -> dict[str, Any]:
+    """What a decoder is to make of the file of a mesh, and of its picture if it is to be drawn."""
+    figures = {
         "width": mesh.width,
         "height": mesh.height,
         "components": mesh.n_components,
         "vertices": mesh.n_vertices,
         "triangles": mesh.n_triangles,
         "mesh_sha256": sha256(mesh_text(mesh).encode("ascii")),
-        "picture_sha256": sha256(pam_bytes(render(mesh))),
     }
+    if drawn:
+        figures["picture_sha256"] = sha256(pam_bytes(render(mesh)))
+    return figures
 
 
 def build() -> dict[str, tuple[bytes, dict[str, Any]]]:
@@ -91,9 +117,8 @@ def build() -> dict[str, tuple[bytes, dict[str, Any]]]:
     for about, recipe in valid.items():
         data = vmesh.dumps(recipe())
         add("valid", about, data, **expected(vmesh.loads(data)))
-    bomb = metadata_bomb()
-    mesh = vmesh.loads(VALID)
-    add("valid", "a profile of 64 MiB", bomb, or_limit=True, **expected(mesh))
+    for about, (mesh, data, drawn) in bombs().items():
+        add("valid", about, data, or_limit=True, **expected(mesh.canonical(), drawn=drawn))
     for about, (code, data) in DAMAGED.items():
         add("invalid", about, data, error=code)
     return files

@@ -151,6 +151,31 @@ DUMPED: Final = [
 ]
 
 
+# Small files that conform, but ask for a lot.
+
+
+def count_bomb() -> Mesh:
+    """All sites of a canvas in one colour: next to no bits for a vertex."""
+    mesh = grid(300)
+    return mesh.replaced(levels=np.zeros_like(mesh.levels))
+
+
+def slivers() -> Mesh:
+    """Two fans over a column of pixels, whose triangles span a quarter of its rows on average."""
+    height = 65_535
+    left = [(0, 0), (0, height)]
+    vertices = np.array(left + [(1, y) for y in range(height + 1)], dtype=np.int32)
+    vertices = vertices[np.lexsort(vertices.T)]
+    return Mesh.from_colors(
+        1, height, vertices, delaunay(vertices), np.zeros((len(vertices), 1), dtype=np.uint8)
+    )
+
+
+def largest_canvas() -> Mesh:
+    """The largest canvas, with nothing on it."""
+    return corners_only(65_535, 65_535, [0, 80, 160, 240])
+
+
 # Files that break a rule.
 
 VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=METADATA), 2))
@@ -220,6 +245,14 @@ def fan(side: int, x: int, y: int) -> Mesh:
     vertices = np.array([(0, 0), (side, 0), (x, y), (0, side), (side, side)], dtype=np.int32)
     triangles = np.array([(0, 1, 2), (0, 2, 3), (1, 4, 2), (2, 4, 3)], dtype=np.int32)
     return Mesh.from_colors(side, side, vertices, triangles, [[5], [90], [200], [40], [250]])
+
+
+def overdrawn(side: int) -> bytes:
+    """A file of triangles that lie over one another, with two corners of the canvas in each."""
+    mesh = mesh_of(side, side, 1, n_vertices=90)
+    last = mesh.n_vertices - 1
+    triangles = [(a, b, last) for a in (0, 1) for b in range(a + 1, last)]
+    return listed(mesh, *triangles[: mesh.n_triangles])
 
 
 def cut(data: bytes, n_bytes: int) -> bytes:
@@ -313,6 +346,7 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
         "geometry",
         listed(mesh_of(2, 1, 1, n_vertices=6), (0, 1, 3), (0, 4, 3), (1, 2, 4), (1, 5, 4)),
     ),
+    "overdraw": ("geometry", overdrawn(40)),
     "an overlap": ("geometry", listed(DUMPED[1], (0, 1, 3), (1, 3, 2))),
     "a fold": ("geometry", listed(fan(3, 2, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
     "a line": ("geometry", listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),

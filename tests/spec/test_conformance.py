@@ -24,6 +24,9 @@ _FOLDER: Final = _ROOT / "spec" / "conformance"
 _MANIFEST: Final[dict[str, Any]] = json.loads((_FOLDER / "manifest.json").read_text("utf-8"))
 _ENTRIES: Final[dict[str, dict[str, Any]]] = {entry["file"]: entry for entry in _MANIFEST["files"]}
 _VALID: Final = [name for name, entry in _ENTRIES.items() if "error" not in entry]
+_GENEROUS: Final = vmesh.Limits(
+    max_metadata=1 << 28, max_pixels=1 << 32, max_vertices_per_byte=5_700
+)
 _INVALID: Final = [name for name, entry in _ENTRIES.items() if "error" in entry]
 
 
@@ -45,8 +48,8 @@ def test_the_library_decodes_a_valid_file_as_the_manifest_says(name: str) -> Non
         mesh = vmesh.loads(read(name))
     except vmesh.LimitError:
         assert entry["or_limit"]
-        mesh = vmesh.loads(read(name), limits=vmesh.Limits(max_metadata=1 << 28))
-    assert expected(mesh).items() <= entry.items()
+        mesh = vmesh.loads(read(name), limits=_GENEROUS)
+    assert expected(mesh, drawn="picture_sha256" in entry).items() <= entry.items()
 
 
 @pytest.mark.parametrize("name", _INVALID)

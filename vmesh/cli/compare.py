@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from vmesh.cli.options import json_option, limit_options, take_limits
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import json_option
 from vmesh.cli.streams import read_mesh_or_photograph
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ from typing import Any
 
 import click
 
-from vmesh.cli.options import limit_options, quiet_option, take_limits
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import quiet_option
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of, write_mesh

@@ -7,7 +7,7 @@ from typing import Final
 
 import click
 
-from vmesh.cli.options import limit_options, take_limits
+from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input, read_mesh
 from vmesh.codec.annotation import Field, annotate
 

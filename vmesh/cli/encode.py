@@ -9,14 +9,8 @@ from typing import Any
 
 import click
 
-from vmesh.cli.options import (
-    encoder_options,
-    json_option,
-    limit_options,
-    quiet_option,
-    take_limits,
-    take_settings,
-)
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import encoder_options, json_option, quiet_option, take_settings
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
 

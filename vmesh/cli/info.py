@@ -7,9 +7,11 @@ from typing import Any
 
 import click
 
+from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input
 from vmesh.codec import layout
 from vmesh.errors import FormatError, LimitError
+from vmesh.limits import Limits
 
 
 @click.command("info")
@@ -21,11 +23,12 @@ from vmesh.errors import FormatError, LimitError
     help="Decode the mesh, to count its triangles and the bytes of its positions and colors.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")
-def command(source: str, by_parts: bool, as_json: bool) -> None:
+@limit_options
+def command(source: str, by_parts: bool, as_json: bool, **options: int) -> None:
     """Say what is in a .vmesh file: its size, its mesh, and the bytes of each part."""
-    data = read_input(source)
+    data, limits = read_input(source), take_limits(options)
     try:
-        figures = describe(data, by_parts)
+        figures = describe(data, by_parts, limits)
     except FormatError as error:
         raise FormatError(error.code, f"{source}: {error.message}", error.offset) from None
     except LimitError as error:
@@ -33,7 +36,7 @@ def command(source: str, by_parts: bool, as_json: bool) -> None:
     click.echo(json.dumps(figures) if as_json else _table(figures))
 
 
-def describe(data: bytes, by_parts: bool) -> dict[str, Any]:
+def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     """Figures of a file whose frame and header are sound; its mesh is decoded only for its parts.
 
     The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
@@ -57,7 +60,7 @@ def describe(data: bytes, by_parts: bool) -> dict[str, Any]:
     if by_parts:
         from vmesh.codec.reader import measure
 
-        mesh, sizes = measure(data)
+        mesh, sizes = measure(data, limits=limits)
         figures["triangles"] = mesh.n_triangles
         parts[-1:] = sizes.items()
     figures["parts"] = [

@@ -8,13 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from vmesh.cli.options import (
-    encoder_options,
-    limit_options,
-    quiet_option,
-    take_limits,
-    take_settings,
-)
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of

@@ -20,7 +20,6 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
-from vmesh.limits import DEFAULT_LIMITS, Limits
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -123,24 +122,6 @@ def take_settings(options: dict[str, Any]) -> Settings:
         return Settings(**chosen)
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-
-
-def limit_options(command: Command) -> Command:
-    """Give a command the limits on what it accepts."""
-    for name, default, text in (
-        ("--max-vertices", DEFAULT_LIMITS.max_vertices, "Most vertices of a mesh."),
-        ("--max-pixels", DEFAULT_LIMITS.max_pixels, "Most pixels of a picture."),
-    ):
-        option = click.option(
-            name, type=click.IntRange(1), default=default, show_default=True, help=text
-        )
-        command = option(command)
-    return command
-
-
-def take_limits(options: dict[str, Any]) -> Limits:
-    """Limits of a command's options, which lose them."""
-    return Limits(max_pixels=options.pop("max_pixels"), max_vertices=options.pop("max_vertices"))
 
 
 quiet_option = click.option("--quiet", is_flag=True, help="No progress on a terminal.")

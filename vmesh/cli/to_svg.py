@@ -6,13 +6,8 @@ from typing import Any
 
 import click
 
-from vmesh.cli.options import (
-    encoder_options,
-    limit_options,
-    quiet_option,
-    take_limits,
-    take_settings,
-)
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import STANDARD, check_suffix
 from vmesh.cli.vector import convert
 from vmesh.formats.registry import FORMATS, format_of

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 import click
 
-from vmesh.cli.options import limit_options, take_limits
+from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input
 from vmesh.codec.validation import Severity, validate
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from math import log2
 from typing import Final, NamedTuple
 
@@ -23,6 +24,9 @@ from vmesh.mesh import Mesh, raster_keys
 _CUT_BYTES: Final = 4
 # Flips for each vertex, beyond which a list of the triangles is the shorter way.
 _MAX_FLIPS: Final = 4
+# To set them up takes longer than to read a small file: copies of them are used.
+_split_odds = cache(entropy.split_odds)
+_level_odds = cache(entropy.level_odds)
 
 
 class Flips(NamedTuple):
@@ -255,7 +259,7 @@ class Decoder:
 def _code_positions(
     coder: Int64Array, data: UInt8Array, points: Int32Array, columns: int, rows: int
 ) -> int:
-    odds = entropy.split_odds()
+    odds = _split_odds().copy()
     entropy.code_positions(coder, data, odds, points, columns, rows)
     return entropy.OK
 
@@ -274,7 +278,7 @@ def _code_levels(
     hierarchy: Hierarchy,
     lattice: ColorLattice,
 ) -> int:
-    odds = entropy.level_odds(lattice.n_components)
+    odds = _level_odds(lattice.n_components).copy()
     return entropy.code_levels(coder, data, odds, *hierarchy, levels, *lattice.level_bounds())
 
 

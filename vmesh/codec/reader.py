@@ -83,6 +83,7 @@ def read_chunks(
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
     *ancillary, coded = chunks
+    limits.check_density(header.n_vertices, len(coded.content))
     metadata = _read_metadata(ancillary, limits, complain)
     mesh, sizes = decode_mesh(coded, header)
     return mesh.replaced(metadata=metadata), sizes

@@ -57,7 +57,7 @@ def validate(
     limits : Limits
         What the file may ask for.
     """
-    found: list[Finding] = []
+    found: dict[Finding, None] = {}  # In order, each once.
 
     def complain(error: FormatError | LimitError) -> None:
         """Note an error."""
@@ -65,16 +65,15 @@ def validate(
             finding = Finding(Severity.ERROR, error.code, error.message, error.offset)
         else:
             finding = Finding(Severity.ERROR, "limit", str(error), None)
-        if finding not in found:
-            found.append(finding)
+        found[finding] = None
 
     try:
         header, chunks = layout.read_file(bytes(memoryview(data)), complain)
         for chunk in chunks:
             if not chunk.is_critical and chunk.tag not in layout.CHUNK_NAMES:
                 text = f"ancillary chunk {chunk.tag.decode()} is unknown, and kept as it is"
-                found.append(Finding(Severity.NOTE, "unknown", text, chunk.offset))
+                found[Finding(Severity.NOTE, "unknown", text, chunk.offset)] = None
         read_chunks(header, chunks, limits, complain)
     except (FormatError, LimitError) as error:
         complain(error)
-    return found
+    return list(found)

@@ -86,7 +86,7 @@ def render(
     triangles = mesh.triangles if placement.keeps_turn else mesh.triangles[:, ::-1].copy()
     doubled_area, n_rows = measure(positions, triangles, drawn[1])
     n_bands = -(-rows // _band_rows(columns, supersample, len(triangles)))
-    limits.check_work(n_rows + drawn[0] * drawn[1] + n_bands * len(triangles))
+    limits.check_work(n_rows + n_bands * len(triangles), drawn[0] * drawn[1])
 
     colors = mesh.colors
     whole = drawn[0] * drawn[1] * SUBPIXEL**2

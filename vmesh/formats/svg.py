@@ -88,7 +88,7 @@ def _check_work(mesh: Mesh, limits: Limits) -> None:
     limits.check_pixels(mesh.width, mesh.height)
     positions = scaled_positions(mesh, (mesh.width, mesh.height))
     _, n_rows = measure(positions, mesh.triangles, mesh.height)
-    limits.check_work(2 * (n_rows + mesh.width * mesh.height))
+    limits.check_work(2 * n_rows, 2 * mesh.width * mesh.height)
 
 
 def _write_layer(

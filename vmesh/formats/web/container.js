@@ -128,7 +128,7 @@ function readChunks(reader) {
 
 /**
  * @param {Uint8Array} bytes a file
- * @param {{pixels: number, vertices: number, metadataBytes: number}} limits
+ * @param {{pixels: number, vertices: number, verticesPerByte: number, metadataBytes: number}} limits
  * @returns {{header: Header, content: Uint8Array, metadata: object, otherChunks: object[]}}
  *   `content` is that of the chunk `M`; it and `otherChunks` share memory with `bytes`
  */
@@ -142,6 +142,7 @@ export function readFile(bytes, limits) {
   const { content } = chunks.pop();
   const nLevels = header.nVertices * header.steps.length;
   check(nLevels <= LEVELS_PER_BYTE * (content.length + 1), "header");
+  check(header.nVertices <= 65536 + limits.verticesPerByte * content.length, "limit");
 
   const metadata = {};
   const otherChunks = [];

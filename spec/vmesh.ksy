@@ -1,0 +1,92 @@
+meta:
+  id: vmesh
+  title: .vmesh, a picture as a triangle mesh
+  file-extension: vmesh
+  license: MIT
+  ks-version: '0.10'
+  endian: le
+  bit-endian: le
+doc: |
+  Container and header of version 0.1; `vmesh.md`, sections 3 and 4, is what counts. The content of
+  the chunk `M` is an arithmetic code (sections 5 to 8), which cannot be described here. Checksums,
+  shortest forms of numbers and ranges are not checked, nor that nothing follows the last chunk.
+doc-ref: vmesh.md
+seq:
+  - id: signature
+    contents: [0x8b, VM, 0x0d, 0x0a]
+  - id: header
+    type: header
+  - id: chunks
+    type: chunk
+    repeat: until
+    repeat-until: _.tag == 'M'
+types:
+  header:
+    seq:
+      - id: version_minor
+        type: b4
+      - id: version_major
+        type: b4
+      - id: components_less_1
+        type: b2
+        doc: 0 grey, 2 RGB, 3 RGB and alpha
+      - id: subdivision
+        type: b4
+        doc: a pixel is 2**subdivision lattice units
+      - id: connectivity
+        type: b2
+        enum: connectivity
+      - id: width
+        type: varint
+      - id: height
+        type: varint
+      - id: n_vertices
+        type: varint
+      - id: steps
+        type: u1
+        repeat: expr
+        repeat-expr: components_less_1 + 1
+      - id: crc
+        type: u4
+        doc: CRC-32 of everything before it, the signature included
+    enums:
+      connectivity:
+        0: implied
+        1: listed
+        2: flipped
+  chunk:
+    seq:
+      - id: tag
+        type: str
+        size: 1
+        encoding: ASCII
+        doc: a capital letter is critical, a small one ancillary
+      - id: length
+        type: varint
+      - id: content
+        size: length.value
+      - id: crc
+        type: u4
+        doc: CRC-32 of tag, length and content
+  varint:
+    doc: A number in groups of seven bits, the lowest first.
+    seq:
+      - id: groups
+        type: group
+        repeat: until
+        repeat-until: not _.goes_on
+    instances:
+      value:
+        value: >-
+          groups[0].bits
+          + (groups.size > 1 ? groups[1].bits << 7 : 0)
+          + (groups.size > 2 ? groups[2].bits << 14 : 0)
+          + (groups.size > 3 ? groups[3].bits << 21 : 0)
+          + (groups.size > 4 ? groups[4].bits << 28 : 0)
+    types:
+      group:
+        seq:
+          - id: bits
+            type: b7
+          - id: goes_on
+            type: b1
