@@ -7,7 +7,7 @@ meta:
   endian: le
   bit-endian: le
 doc: |
-  Container and header of version 0.1; `vmesh.md`, sections 3 and 4, is what counts. The content of
+  Container and header of version 1.0; `vmesh.md`, sections 3 and 4, is what counts. The content of
   the chunk `M` is an arithmetic code (sections 5 to 8), which cannot be described here. Checksums,
   shortest forms of numbers and ranges are not checked, nor that nothing follows the last chunk.
 doc-ref: vmesh.md
@@ -27,15 +27,18 @@ types:
         type: b4
       - id: version_major
         type: b4
-      - id: components_less_1
+      - id: kind
         type: b2
-        doc: 0 grey, 2 RGB, 3 RGB and alpha
+        doc: 0 grey, 2 RGB, 3 RGB and alpha; 1 if the next byte says it
       - id: subdivision
         type: b4
         doc: a pixel is 2**subdivision lattice units
       - id: connectivity
         type: b2
         enum: connectivity
+      - id: deep
+        type: deep
+        if: kind == 1
       - id: width
         type: varint
       - id: height
@@ -43,9 +46,9 @@ types:
       - id: n_vertices
         type: varint
       - id: steps
-        type: u1
+        type: varint
         repeat: expr
-        repeat-expr: components_less_1 + 1
+        repeat-expr: '(kind == 1 ? deep.components_less_1 : kind) + 1'
       - id: crc
         type: u4
         doc: CRC-32 of everything before it, the signature included
@@ -54,6 +57,15 @@ types:
         0: implied
         1: listed
         2: flipped
+  deep:
+    seq:
+      - id: components_less_1
+        type: b2
+        doc: 0 grey, 2 RGB, 3 RGB and alpha
+      - id: depth_less_8
+        type: b4
+      - id: reserved
+        type: b2
   chunk:
     seq:
       - id: tag

@@ -9,6 +9,9 @@ import numpy.typing as npt
 
 UInt8Array: TypeAlias = npt.NDArray[np.uint8]
 UInt16Array: TypeAlias = npt.NDArray[np.uint16]
+SampleArray: TypeAlias = npt.NDArray[np.uint8] | npt.NDArray[np.uint16]
+"""Samples of 8 bits, or of 9 to 16."""
+
 Int32Array: TypeAlias = npt.NDArray[np.int32]
 Int64Array: TypeAlias = npt.NDArray[np.int64]
 Float64Array: TypeAlias = npt.NDArray[np.float64]

@@ -3,7 +3,7 @@
 A colour of three or four components is stored as luma and two chroma differences (YCoCg-R, the
 reversible form), each rounded to a multiple of its step; alpha and grey are plain multiples::
 
-    samples  R G B [A]   or   grey          8 bits, what is drawn
+    samples  R G B [A]   or   grey          8 to 16 bits, what is drawn
        ^
        |    G = Cg + t,  B = t - floor(Co / 2),  R = B + Co   with  t = Y - floor(Cg / 2)
        |
@@ -12,7 +12,7 @@ reversible form), each rounded to a multiple of its step; alpha and grey are pla
        |
     levels   integers, what a file stores
 
-With all steps 1 the lattice holds every 8-bit colour exactly.
+With all steps 1 the lattice holds every colour exactly.
 
 References
 ----------
@@ -28,10 +28,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.arrays import Int32Array, SampleArray
+from vmesh.limits import MAX_DEPTH
 
-MAX_SAMPLE: Final = 255
+PLAIN_DEPTH: Final = 8
 MAX_STEP: Final = 255
+"""The largest step of colours of 8 bits."""
 
 # The squared error of a unit of Y, Co, Cg counts 3, 1/2 and 3/4 in the sum over R, G, B, which
 # would balance steps of 1 : 2.4 : 2. Finer chroma serves as well: at 2 and 4 % of the pixels of
@@ -47,36 +49,48 @@ class ColorLattice:
     Parameters
     ----------
     steps : tuple of int
-        One step of 1 to 255 sample units for each component: ``(grey,)``, ``(Y, Co, Cg)`` or
-        ``(Y, Co, Cg, alpha)``.
+        One step for each component, from 1 to the largest sample: ``(grey,)``, ``(Y, Co, Cg)``
+        or ``(Y, Co, Cg, alpha)``.
+    depth : int
+        Bits of a sample, 8 to 16.
     """
 
     steps: tuple[int, ...]
+    depth: int = PLAIN_DEPTH
 
     def __post_init__(self) -> None:
         if len(self.steps) not in (1, 3, 4):
             raise ValueError(f"expected 1, 3 or 4 colour components, got {len(self.steps)}")
-        if not all(isinstance(step, int) and 1 <= step <= MAX_STEP for step in self.steps):
-            raise ValueError(f"expected colour steps of 1 to {MAX_STEP}, got {self.steps}")
+        if not PLAIN_DEPTH <= self.depth <= MAX_DEPTH:
+            raise ValueError(f"expected samples of 8 to {MAX_DEPTH} bits, got {self.depth}")
+        largest = self.max_sample
+        if not all(isinstance(step, int) and 1 <= step <= largest for step in self.steps):
+            raise ValueError(f"expected colour steps of 1 to {largest}, got {self.steps}")
 
     @classmethod
-    def uniform(cls, n_components: int, step: int) -> ColorLattice:
+    def uniform(cls, n_components: int, step: int, depth: int = PLAIN_DEPTH) -> ColorLattice:
         """Lattice with this luma step and chroma steps in proportion."""
         if n_components == 1:
-            return cls((step,))
-        chroma = tuple(min(MAX_STEP, round(step * ratio)) for ratio in _CHROMA_STEP_RATIOS)
+            return cls((step,), depth)
+        largest = (1 << depth) - 1
+        chroma = tuple(min(largest, round(step * ratio)) for ratio in _CHROMA_STEP_RATIOS)
         steps = (1, 1, 1) if step == 1 else chroma
-        return cls(steps if n_components == 3 else (*steps, step))
+        return cls(steps if n_components == 3 else (*steps, step), depth)
 
     @property
     def n_components(self) -> int:
         """Number of colour components."""
         return len(self.steps)
 
+    @property
+    def max_sample(self) -> int:
+        """The largest sample, 255 for 8 bits."""
+        return (1 << self.depth) - 1
+
     def level_bounds(self) -> tuple[Int32Array, Int32Array]:
         """Lowest and highest level of each component, two arrays of shape (c,)."""
         steps = np.asarray(self.steps, dtype=np.int32)
-        highest = -(-MAX_SAMPLE // steps)
+        highest = -(-self.max_sample // steps)
         lowest = np.zeros_like(highest)
         lowest[1:3] = -highest[1:3]
         return lowest, highest
@@ -86,12 +100,12 @@ class ColorLattice:
         return np.zeros((n, self.n_components), dtype=np.int32)
 
     def levels_from_colors(self, colors: npt.ArrayLike) -> Int32Array:
-        """Levels nearest to 8-bit colours.
+        """Levels nearest to colours.
 
         Parameters
         ----------
         colors : array_like
-            Shape (n, c), samples of 0 to 255 in the order grey, RGB or RGBA.
+            Shape (n, c), samples of 0 to 255, or up to `max_sample`, in the order grey, RGB or RGBA.
 
         Returns
         -------
@@ -113,8 +127,8 @@ class ColorLattice:
         levels: Int32Array = np.clip((2 * values + steps) // (2 * steps), lowest, highest)
         return levels
 
-    def colors_from_levels(self, levels: npt.NDArray[np.integer]) -> UInt8Array:
-        """8-bit colours of lattice levels, the exact arithmetic of the format.
+    def colors_from_levels(self, levels: npt.NDArray[np.integer]) -> SampleArray:
+        """Colours of lattice levels, the exact arithmetic of the format.
 
         Parameters
         ----------
@@ -124,7 +138,7 @@ class ColorLattice:
         Returns
         -------
         ndarray
-            Shape (n, c), uint8, in the order grey, RGB or RGBA.
+            Shape (n, c), uint8 or, above 8 bits, uint16, in the order grey, RGB or RGBA.
         """
         values = levels.astype(np.int32) * np.asarray(self.steps, dtype=np.int32)
         if self.n_components >= 3:
@@ -134,4 +148,5 @@ class ColorLattice:
             values[:, 0] = blue + orange
             values[:, 1] = green_minus + middle
             values[:, 2] = blue
-        return np.clip(values, 0, MAX_SAMPLE).astype(np.uint8)
+        dtype = np.uint8 if self.depth == PLAIN_DEPTH else np.uint16
+        return np.clip(values, 0, self.max_sample).astype(dtype)

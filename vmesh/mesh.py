@@ -19,8 +19,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
-from vmesh.color_lattice import ColorLattice
+from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray, UInt8Array
+from vmesh.color_lattice import PLAIN_DEPTH, ColorLattice
 from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 
 _LARGEST_ENTRY: Final = 1e9
@@ -113,20 +113,23 @@ class Mesh:
         colors: npt.ArrayLike,
         *,
         step: int = 1,
+        depth: int = PLAIN_DEPTH,
         subdivision: int = 0,
         metadata: Metadata | None = None,
     ) -> Mesh:
-        """Mesh with 8-bit vertex colours rounded to a lattice of the given luma step.
+        """Mesh with vertex colours rounded to a lattice of the given luma step.
 
         Parameters
         ----------
         colors : array_like
-            Shape (n, 1), (n, 3) or (n, 4), samples of 0 to 255; kept exactly where `step` is 1.
+            Shape (n, 1), (n, 3) or (n, 4), samples of `depth` bits; kept exactly where `step` is 1.
+        depth : int
+            Bits of a sample, 8 to 16.
         """
         samples = np.asarray(colors)
         if samples.ndim != 2:
             raise ValueError(f"expected colours of shape (n, c), got {samples.shape}")
-        lattice = ColorLattice.uniform(samples.shape[1], step)
+        lattice = ColorLattice.uniform(samples.shape[1], step, depth)
         return cls(
             width,
             height,
@@ -159,9 +162,24 @@ class Mesh:
         return 1 << self.subdivision
 
     @property
-    def colors(self) -> UInt8Array:
-        """Colours of the vertices, shape (n, c), uint8: grey, RGB or RGBA, alpha not multiplied."""
+    def depth(self) -> int:
+        """Bits of a sample, 8 to 16."""
+        return self.lattice.depth
+
+    @property
+    def colors(self) -> SampleArray:
+        """Colours of the vertices: grey, RGB or RGBA, alpha not multiplied.
+
+        Shape (n, c), uint8, or uint16 if samples have more than 8 bits.
+        """
         return self.lattice.colors_from_levels(self.levels)
+
+    @property
+    def plain_colors(self) -> UInt8Array:
+        """Colours of the vertices in 8 bits, rounded if they have more; shape (n, c), uint8."""
+        largest = self.lattice.max_sample
+        wide = self.colors.astype(np.int64)
+        return ((2 * 255 * wide + largest) // (2 * largest)).astype(np.uint8)
 
     @property
     def points(self) -> Float64Array:

@@ -10,7 +10,7 @@ import numpy as np
 Content = tuple[bytes, bytes]
 
 SIGNATURE = b"\x8bVM\r\n"
-# The fields of a header, in order; one byte for each step follows them.
+# The fields of a header of samples of 8 bits, in order; a number for each step follows them.
 HEADER_FIELDS = ("version", "format", "width", "height", "n_vertices")
 # First bit and number of bits of the fields that share the byte `format`.
 FORMAT_FIELDS = {"components": (0, 2), "subdivision": (2, 4), "connectivity": (6, 2)}
@@ -44,9 +44,12 @@ def checked(data: bytes) -> bytes:
 def split(data: bytes) -> tuple[bytes, list[Content]]:
     """The header of a file without signature and checksum, and its chunks, without any check."""
     offset = len(SIGNATURE) + 2
-    for _ in range(3):
+    components = data[offset - 1] & 3
+    if components == 1:
+        components = data[offset] & 3
+        offset += 1
+    for _ in range(3 + components + 1):
         _, offset = split_varint(data, offset)
-    offset += (data[len(SIGNATURE) + 1] & 3) + 1
     header = data[len(SIGNATURE) : offset]
     offset += 4
     contents = []
@@ -88,10 +91,19 @@ def header_fields(data: bytes) -> dict[str, int]:
     return fields
 
 
+def header_steps(data: bytes) -> bytes:
+    """The bytes of the steps."""
+    header, _ = split(data)
+    offset = 2
+    for _ in range(3):
+        _, offset = split_varint(header, offset)
+    return header[offset:]
+
+
 def with_header(data: bytes, steps: bytes | None = None, /, **values: int) -> bytes:
     """The file with its steps or fields of its header replaced."""
-    header, contents = split(data)
-    own_steps = header[len(header) - header_fields(data)["components"] - 1 :]
+    _, contents = split(data)
+    own_steps = header_steps(data)
     fields = {**header_fields(data), **values}
     if "format" not in values:
         fields["format"] = sum(fields[name] << first for name, (first, _) in FORMAT_FIELDS.items())

@@ -29,7 +29,6 @@ from tests.spec.recipes import (
     mesh_of,
     slivers,
 )
-from vmesh.arrays import UInt8Array
 from vmesh.codec.layout import VERSION
 from vmesh.codec.text import mesh_text
 from vmesh.formats.pam import write_pam
@@ -83,10 +82,10 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def pam_bytes(pixels: UInt8Array) -> bytes:
-    """A PAM file of pixels."""
+def pam_bytes(mesh: Mesh) -> bytes:
+    """A PAM file of the pixels of a mesh."""
     stream = io.BytesIO()
-    write_pam(pixels, stream)
+    write_pam(render(mesh), stream, depth=mesh.depth)
     return stream.getvalue()
 
 
@@ -101,7 +100,7 @@ def expected(mesh: Mesh, *, drawn: bool = True) -> dict[str, Any]:
         "mesh_sha256": sha256(mesh_text(mesh).encode("ascii")),
     }
     if drawn:
-        figures["picture_sha256"] = sha256(pam_bytes(render(mesh)))
+        figures["picture_sha256"] = sha256(pam_bytes(mesh))
     return figures
 
 

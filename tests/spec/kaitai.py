@@ -56,6 +56,8 @@ def parse(spec: Spec, reader: Reader, known: Spec | None = None) -> Any:
     known = {**(known or {}), **spec.get("types", {})}
     record = SimpleNamespace()
     for field in spec["seq"]:
+        if "if" in field and not evaluate(field["if"], **vars(record)):
+            continue
         setattr(record, field["id"], _read(field, reader, record, known, spec))
     for name, instance in spec.get("instances", {}).items():
         setattr(record, name, evaluate(instance["value"], **vars(record)))

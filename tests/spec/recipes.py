@@ -36,6 +36,7 @@ def mesh_of(
     n_vertices: int = 4,
     subdivision: int = 0,
     step: int = 1,
+    depth: int = 8,
     metadata: Metadata | None = None,
 ) -> Mesh:
     """A Delaunay mesh with random vertices and colours."""
@@ -45,7 +46,7 @@ def mesh_of(
     while len(sites) < n_vertices:
         sites.add((int(random.integers(far_x + 1)), int(random.integers(far_y + 1))))
     vertices = np.array(sorted(sites, key=lambda site: site[::-1]), dtype=np.int32)
-    colors = random.integers(0, 256, (len(vertices), n_components))
+    colors = random.integers(0, 1 << depth, (len(vertices), n_components))
     return Mesh.from_colors(
         width,
         height,
@@ -53,6 +54,7 @@ def mesh_of(
         delaunay(vertices),
         colors,
         step=step,
+        depth=depth,
         subdivision=subdivision,
         metadata=metadata,
     )
@@ -125,6 +127,13 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
     "subdivision 8": lambda: mesh_of(11, 13, 1, n_vertices=40, subdivision=8),
     "step 8": lambda: mesh_of(16, 12, 4, n_vertices=40, step=8),
     "step 255": lambda: mesh_of(8, 8, 3, n_vertices=30, step=255),
+    "9 bits": lambda: mesh_of(8, 8, 3, n_vertices=30, depth=9),
+    "12 bits, grey": lambda: mesh_of(16, 12, 1, n_vertices=40, subdivision=1, depth=12),
+    "16 bits, rgba": lambda: flipped(mesh_of(11, 13, 4, n_vertices=40, depth=16), 5),
+    "16 bits, extremes": lambda: corners_only(3, 2, [0, 65535, 65535, 0], depth=16),
+    "16 bits, step 1000": lambda: mesh_of(16, 12, 3, n_vertices=60, step=1000, depth=16),
+    "16 bits, step 65535": lambda: mesh_of(8, 8, 4, n_vertices=30, step=65535, depth=16),
+    "16 bits, a large triangle": lambda: corners_only(9000, 20, [1, 65534, 7, 65535], depth=16),
     "wide and flat": lambda: mesh_of(300, 1, 3, n_vertices=50, subdivision=2),
     "flipped": lambda: flipped(mesh_of(16, 12, 3, n_vertices=70), 12),
     "flipped, ties": lambda: flipped(grid(8), 20),
@@ -136,11 +145,11 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
 }
 
 
-def corners_only(width: int, height: int, colors: list[int]) -> Mesh:
+def corners_only(width: int, height: int, colors: list[int], *, depth: int = 8) -> Mesh:
+    """A grey mesh of the corners of its canvas."""
     vertices = np.array([(0, 0), (width, 0), (0, height), (width, height)], dtype=np.int32)
-    return Mesh.from_colors(
-        width, height, vertices, delaunay(vertices), np.array(colors)[:, np.newaxis]
-    )
+    grey = np.array(colors)[:, np.newaxis]
+    return Mesh.from_colors(width, height, vertices, delaunay(vertices), grey, depth=depth)
 
 
 TWO_PIXELS: Final = corners_only(2, 1, [0, 255, 0, 255])
@@ -200,6 +209,12 @@ def with_numbers(*numbers: bytes) -> bytes:
     return file_of(HEADER[:2] + b"".join(numbers) + HEADER[-3:], CHUNKS)
 
 
+def with_depth(depth: int, n_steps: int) -> bytes:
+    """The valid file with a byte of components and depth, and as many steps."""
+    form = bytes([HEADER[0], HEADER[1] & ~3 | 1, depth])
+    return file_of(form + HEADER[2:-3] + b"\1" * n_steps, CHUNKS)
+
+
 def without_triangles(encoder: Encoder, mesh: Mesh) -> None:
     """Write positions and colours of a mesh."""
     columns, rows = (side * mesh.unit + 1 for side in (mesh.width, mesh.height))
@@ -236,7 +251,7 @@ def misplaced(width: int, height: int, *vertices: tuple[int, int]) -> bytes:
     """A file of a canvas with other vertices than its corners, and colours of no bits."""
     points = np.array(vertices, dtype=np.int32)
     content = encode(lambda encoder: encoder.positions(points, width + 1, height + 1))
-    header = bytes([1, 0, width, height, len(points), 1])
+    header = bytes([0x10, 0, width, height, len(points), 1])
     return file_of(header, [(b"M", content)])
 
 
@@ -282,16 +297,20 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "a flipped bit of a step": ("checksum", VALID[:10] + bytes([VALID[10] ^ 1]) + VALID[11:]),
     "a flipped bit of a tag": ("checksum", START + b"m" + chunk_of(*MESH)[1:]),
     "version 0.0": ("version", with_header(VALID, version=0x00)),
-    "version 0.2": ("version", with_header(VALID, version=0x02)),
-    "version 1.0": ("version", with_header(VALID, version=0x10)),
-    "a version alone": ("version", VALID[:5] + b"\x10"),
+    "version 0.1": ("version", with_header(VALID, version=0x01)),
+    "version 2.0": ("version", with_header(VALID, version=0x20)),
+    "a version alone": ("version", VALID[:5] + b"\x20"),
     "no width": ("header", with_header(VALID, width=0)),
     "no height": ("header", with_header(VALID, height=0)),
     "too wide": ("header", with_header(VALID, width=65_536)),
     "too high": ("header", with_header(VALID, height=65_536)),
     "subdivision 9": ("header", with_header(VALID, subdivision=9)),
     "a huge lattice": ("header", with_header(VALID, height=65_535, subdivision=4)),
-    "two components": ("header", with_header(VALID, b"\1\1", components=1)),
+    "two components": ("header", with_depth(0b000101, 2)),
+    "a depth of 8 told apart": ("header", with_depth(0b000010, 3)),
+    "17 bits": ("header", with_depth(0b100110, 3)),
+    "a reserved bit of the depth": ("header", with_depth(0b1000110, 3)),
+    "half a depth": ("truncated", VALID[:6] + b"\1"),
     "unknown connectivity": ("header", with_header(VALID, connectivity=3)),
     "three vertices": ("header", with_header(VALID, n_vertices=3)),
     "too many vertices": ("header", with_header(VALID, n_vertices=43)),
@@ -300,6 +319,8 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
         with_header(VALID, width=2000, height=2000, n_vertices=1900 * (len(MESH[1]) + 1) + 1),
     ),
     "step 0": ("header", with_header(VALID, b"\1\0\1")),
+    "step 256 of 8 bits": ("header", with_header(VALID, b"\1\1" + varint(256))),
+    "a long step": ("header", with_header(VALID, b"\1\1" + padded(1))),
     "a long width": ("header", with_numbers(padded(6), varint(5), varint(15))),
     "a long height": ("header", with_numbers(varint(6), padded(5), varint(15))),
     "a long count": ("header", with_numbers(varint(6), varint(5), padded(15))),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
@@ -14,10 +15,11 @@ import numpy as np
 import pytest
 
 import vmesh
-from tests.spec.build_conformance import build, expected, pam_bytes, sha256
+from tests.spec.build_conformance import build, expected, sha256
 from tests.spec.test_spec import SPEC
 from vmesh.codec.layout import VERSION
 from vmesh.codec.validation import validate
+from vmesh.formats.pam import write_pam
 
 _ROOT: Final = Path(__file__).parents[2]
 _FOLDER: Final = _ROOT / "spec" / "conformance"
@@ -70,6 +72,7 @@ def test_the_specification_decodes_a_valid_file_as_the_manifest_says(name: str) 
         f"vmesh {_MANIFEST['version']}",
         f"canvas {decoded['width']} {decoded['height']}",
         f"subdivision {decoded['subdivision']}",
+        f"depth {decoded['depth']}",
         "steps " + " ".join(map(str, decoded["steps"])),
         f"vertices {len(decoded['vertices'])}",
     ]
@@ -79,8 +82,11 @@ def test_the_specification_decodes_a_valid_file_as_the_manifest_says(name: str) 
     lines += [" ".join(map(str, triangle)) for triangle in decoded["triangles"]]
     assert sha256("".join(f"{line}\n" for line in lines).encode("ascii")) == entry["mesh_sha256"]
     if decoded["width"] * decoded["height"] * len(decoded["triangles"]) <= 100_000:
-        pixels = np.array(SPEC["render"](decoded), dtype=np.uint8)
-        assert sha256(pam_bytes(pixels)) == entry["picture_sha256"]
+        dtype = np.uint8 if decoded["depth"] == 8 else np.uint16
+        stream = io.BytesIO()
+        pixels = np.array(SPEC["render"](decoded), dtype=dtype)
+        write_pam(pixels, stream, depth=decoded["depth"])
+        assert sha256(stream.getvalue()) == entry["picture_sha256"]
 
 
 @pytest.mark.parametrize("name", _INVALID)
@@ -119,7 +125,7 @@ def test_the_runner_passes_the_library() -> None:
     ("body", "complaint"),
     [
         ("", "no mesh was written"),
-        ("open(target + '.mesh', 'w').write('vmesh 0.1')", "another mesh was decoded"),
+        ("open(target + '.mesh', 'w').write('vmesh 1.0')", "another mesh was decoded"),
         ("sys.exit('nothing works')", "expected status 0, got 1 and 'nothing works'"),
         ("import time; time.sleep(60)", "no answer within 2 s"),
     ],

@@ -54,7 +54,8 @@ def figures_of(file: Any) -> dict[str, Any]:
         "subdivision": header.subdivision,
         "connectivity": getattr(connectivity, "name", connectivity),
         "n_vertices": header.n_vertices.value,
-        "steps": list(header.steps),
+        "depth": 8 + (header.deep.depth_less_8 if header.kind == 1 else 0),
+        "steps": [step.value for step in header.steps],
         "chunks": [(chunk.tag, chunk.length.value, chunk.content) for chunk in file.chunks],
         "checksums": [header.crc, *(chunk.crc for chunk in file.chunks)],
     }
@@ -72,6 +73,7 @@ def expected(data: bytes) -> dict[str, Any]:
         "subdivision": header.subdivision,
         "connectivity": layout.CONNECTIVITY_NAMES[header.connectivity],
         "n_vertices": header.n_vertices,
+        "depth": header.depth,
         "steps": list(header.steps),
         "chunks": [(chunk.tag.decode(), chunk.length, chunk.content) for chunk in chunks],
         "checksums": [int.from_bytes(data[end : end + 4], "little") for end in ends],

@@ -123,9 +123,7 @@ def test_the_decoder_of_the_specification_agrees_with_the_library(name: str) -> 
 def test_the_renderer_of_the_specification_agrees_with_the_library(name: str) -> None:
     data = vmesh.dumps(MESHES[name]())
     mesh = vmesh.loads(data)
-    raster = np.zeros((mesh.height, mesh.width, mesh.n_components), dtype=np.uint8)
-    scaled = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
-    fill(scaled, mesh.triangles, mesh.colors, raster)
+    raster = vmesh.render(mesh).reshape(mesh.height, mesh.width, mesh.n_components)
 
     assert SPEC["render"](decode(data)) == [
         [tuple(pixel) for pixel in row] for row in raster.tolist()

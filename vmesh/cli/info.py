@@ -44,10 +44,11 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     """
     header, chunks = layout.read_file(data)
     figures: dict[str, Any] = {
-        "version": ".".join(map(str, layout.VERSION)),
+        "version": layout.version_name(data[len(layout.SIGNATURE)]),
         "width": header.width,
         "height": header.height,
         "components": layout.COMPONENT_NAMES[header.n_components],
+        "depth": header.depth,
         "color_steps": list(header.steps),
         "subdivision": header.subdivision,
         "vertices": header.n_vertices,
@@ -79,7 +80,8 @@ def _table(figures: dict[str, Any]) -> str:
     density = figures["vertices"] / (figures["width"] * figures["height"])
     triangles = f"{figures['triangles']} triangles" if "triangles" in figures else "triangles"
     lines = [
-        f"{figures['width']} x {figures['height']} pixels, {figures['components']}, "
+        f"{figures['width']} x {figures['height']} pixels, {figures['components']} "
+        f"of {figures['depth']} bits, "
         f".vmesh {figures['version']}",
         f"{figures['vertices']} vertices ({density:.2%} of the pixels) "
         f"on 1/{1 << figures['subdivision']} pixel, {figures['connectivity']} {triangles}",

@@ -60,21 +60,24 @@ def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:
     at = len(layout.SIGNATURE)
     yield at, "signature"
     (version,) = layout.take(data, at, 1, "the header")
-    yield 1, f"version {version >> 4}.{version & 15}"
+    yield 1, f"version {layout.version_name(version)}"
     layout.check_version(version)
-    (form,) = layout.take(data, at + 1, 1, "the header")
-    n_components = (form & 3) + 1
-    components = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
+    form, components, end = layout.read_form(data, at + 1)
+    n_components = (components & 3) + 1
+    kind = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
+    if end > at + 2:
+        kind = "deep"
     triangles = layout.CONNECTIVITY_NAMES.get(form >> 6, "unknown")
-    yield 1, f"{components}, subdivision {form >> 2 & 15}, {triangles} triangles"
-    at += 2
-    for name in ("width", "height", "vertices"):
+    yield 1, f"{kind}, subdivision {form >> 2 & 15}, {triangles} triangles"
+    if end > at + 2:
+        kind = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
+        yield 1, f"{kind} of {layout.PLAIN_DEPTH + (components >> 2)} bits"
+    at = end
+    for name in ("width", "height", "vertices", *["colour step"] * n_components):
         number, end = layout.read_varint(data, at, "header")
         yield end - at, f"{name} {number}"
         at = end
-    steps = layout.take(data, at, n_components, "the header")
-    yield n_components, "colour steps " + ", ".join(map(str, steps))
-    yield 4, _checksum(data, 0, at + n_components)
+    yield 4, _checksum(data, 0, at)
 
 
 def _checksum(data: bytes, start: int, end: int) -> str:

@@ -3,12 +3,14 @@
 ::
 
     signature   5 bytes
-    header      version 1 | format 1 | width, height, number of vertices, varints of 1 to 5
-                steps, 1 for each component | CRC-32 of signature and header 4
+    header      version 1 | format 1 | depth 1, if not 8 | width, height, number of vertices,
+                steps of the components, varints of 1 to 5 | CRC-32 of signature and header 4
     chunk       tag 1 | length, a varint | content, length bytes | CRC-32 of all that 4
     ...         metadata, then the mesh, M, with which the file ends
 
-    format      bits 0-1  components - 1     bits 2-5  subdivision     bits 6-7  connectivity
+    format      bits 0-1  components - 1, or 1: in the next byte
+                bits 2-5  subdivision        bits 6-7  connectivity
+    depth       bits 0-1  components - 1     bits 2-5  depth - 8       bits 6-7  0
 
 A tag is a letter. A capital one is critical: a reader that does not know it gives up. A small one
 is ancillary: it is kept as it is.
@@ -24,10 +26,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from vmesh.errors import FormatError
-from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
+from vmesh.limits import MAX_DEPTH, MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 
 SIGNATURE: Final = b"\x8bVM\r\n"
-VERSION: Final = (0, 1)
+VERSION: Final = (1, 0)
 
 MESH_TAG: Final = b"M"
 METADATA_TAGS: Final = {"icc": b"i", "exif": b"e", "xmp": b"x"}
@@ -44,6 +46,8 @@ CONNECTIVITY_NAMES: Final = {
 }
 CHUNK_NAMES: Final = {MESH_TAG: "mesh", **{tag: name for name, tag in METADATA_TAGS.items()}}
 
+PLAIN_DEPTH: Final = 8
+_DEEP: Final = 1  # in place of the components: they follow, with the depth
 _CHECKSUM = struct.Struct("<I")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]")
 _MAX_VARINT: Final = (1 << 31) - 1
@@ -91,6 +95,7 @@ class Header:
     connectivity: int
     n_vertices: int
     steps: tuple[int, ...]
+    depth: int = PLAIN_DEPTH
 
     @property
     def n_components(self) -> int:
@@ -110,9 +115,13 @@ class Header:
     def pack(self) -> bytes:
         """Bytes of signature and header, with their checksum."""
         version = VERSION[0] << 4 | VERSION[1]
-        form = (self.n_components - 1) | self.subdivision << 2 | self.connectivity << 6
-        counts = b"".join(map(pack_varint, (self.width, self.height, self.n_vertices)))
-        return _checked(SIGNATURE + bytes((version, form)) + counts + bytes(self.steps))
+        components = self.n_components - 1
+        form = bytes([components | self.subdivision << 2 | self.connectivity << 6])
+        if self.depth != PLAIN_DEPTH:
+            depth = components | (self.depth - PLAIN_DEPTH) << 2
+            form = bytes([_DEEP | self.subdivision << 2 | self.connectivity << 6, depth])
+        numbers = (self.width, self.height, self.n_vertices, *self.steps)
+        return _checked(SIGNATURE + bytes([version]) + form + b"".join(map(pack_varint, numbers)))
 
 
 def pack_varint(number: int) -> bytes:
@@ -201,19 +210,17 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     start = len(SIGNATURE)
     # A newer version may have another header: its first byte alone is sure to mean the same.
     check_version(take(data, start, 1, "the header")[0])
-    form = take(data, start + 1, 1, "the header")[0]
+    form, components, end = read_form(data, start + 1)
     numbers = []
-    end = start + 2
-    for _ in range(3):
+    for _ in range(3 + (components & 3) + 1):
         number, end = read_varint(data, end, "header")
         numbers.append(number)
-    width, height, n_vertices = numbers
-    n_components = (form & 3) + 1
-    steps = tuple(take(data, end, n_components, "the header"))
-    end += n_components
     _verify(data, 0, end, "the header", complain)
-    header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, steps)
-    errors = [FormatError("header", text, start) for text in _header_complaints(header)]
+    width, height, n_vertices, *steps = numbers
+    depth = PLAIN_DEPTH + (components >> 2)
+    header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, tuple(steps), depth)
+    is_deep = form & 3 == _DEEP
+    errors = [FormatError("header", text, start) for text in _header_complaints(header, is_deep)]
     for error in errors:
         complain(error)
     if errors:
@@ -221,20 +228,35 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     return header, end + _CHECKSUM.size
 
 
+def read_form(data: bytes, start: int) -> tuple[int, int, int]:
+    """The format byte, that of depth and components, and the offset of what follows.
+
+    The second has components - 1 in its lower two bits and depth - 8 above them. It is made from
+    the first where it is not in the file.
+    """
+    form = take(data, start, 1, "the header")[0]
+    if form & 3 != _DEEP:
+        return form, form & 3, start + 1
+    return form, take(data, start + 1, 1, "the header")[0], start + 2
+
+
 def check_version(byte: int) -> None:
-    """Refuse a file of another version, before anything else in it matters."""
-    version = (byte >> 4, byte & 15)
-    if version != VERSION:
+    """Refuse a file of another major version, before anything else in it matters."""
+    if byte >> 4 != VERSION[0]:
         raise FormatError(
             "version",
-            f"the file is of version {version[0]}.{version[1]}, "
-            f"this program reads {VERSION[0]}.{VERSION[1]}",
+            f"the file is of version {version_name(byte)}, this program reads {VERSION[0]}.x",
             len(SIGNATURE),
         )
 
 
-def _header_complaints(header: Header) -> Iterator[str]:
-    """What is wrong with a header, in words."""
+def version_name(byte: int) -> str:
+    """A version as people write it."""
+    return f"{byte >> 4}.{byte & 15}"
+
+
+def _header_complaints(header: Header, is_deep: bool) -> Iterator[str]:
+    """What is wrong with a header, in words; it has a byte for the depth if it is deep."""
     if not (1 <= header.width <= MAX_SIDE and 1 <= header.height <= MAX_SIDE):
         yield (
             f"expected a canvas of 1 to {MAX_SIDE} pixels a side, "
@@ -250,8 +272,11 @@ def _header_complaints(header: Header) -> Iterator[str]:
         yield f"connectivity {header.connectivity} is unknown"
     if not 4 <= header.n_vertices <= header.columns * header.rows:
         yield f"expected 4 to {header.columns * header.rows} vertices, got {header.n_vertices}"
-    if 0 in header.steps:
-        yield f"expected steps of 1 to 255, got {list(header.steps)}"
+    if is_deep and not PLAIN_DEPTH < header.depth <= MAX_DEPTH:
+        yield f"expected {PLAIN_DEPTH + 1} to {MAX_DEPTH} bits in a sample, got {header.depth}"
+    largest = (1 << header.depth) - 1
+    if not all(1 <= step <= largest for step in header.steps):
+        yield f"expected steps of 1 to {largest}, got {list(header.steps)}"
 
 
 def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Chunk]:

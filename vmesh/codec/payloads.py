@@ -95,7 +95,7 @@ def decode_mesh(chunk: Chunk, header: Header) -> tuple[Mesh, dict[str, int]]:
     far = (header.columns - 1, header.rows - 1)
     if np.count_nonzero(find_corners(vertices, far)) != 4:
         raise FormatError("geometry", "a corner of the canvas is no vertex", chunk.content_offset)
-    lattice = ColorLattice(header.steps)
+    lattice = ColorLattice(header.steps, header.depth)
     triangles = delaunay(vertices)
     levels = decoder.levels(build_hierarchy(vertices, triangles), lattice)
     is_listed = header.connectivity == LISTED_TRIANGLES and chunk.is_whole

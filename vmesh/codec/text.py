@@ -25,6 +25,7 @@ def _lines(mesh: Mesh) -> Iterator[str]:
     yield f"vmesh {VERSION[0]}.{VERSION[1]}"
     yield f"canvas {mesh.width} {mesh.height}"
     yield f"subdivision {mesh.subdivision}"
+    yield f"depth {mesh.lattice.depth}"
     yield " ".join(["steps", *map(str, mesh.lattice.steps)])
     yield f"vertices {mesh.n_vertices}"
     for numbers in np.concatenate([mesh.vertices, mesh.levels], axis=1).tolist():

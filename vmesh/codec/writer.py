@@ -38,6 +38,7 @@ def dumps(mesh: Mesh) -> bytes:
         connectivity=connectivity,
         n_vertices=ordered.n_vertices,
         steps=ordered.lattice.steps,
+        depth=ordered.lattice.depth,
     )
     coded = (layout.MESH_TAG, encode_mesh(ordered, header, flips))
     return layout.pack_file(header, [*_metadata_contents(ordered.metadata), coded])

@@ -34,7 +34,7 @@ def write_pdf(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) 
     context = cairocffi.Context(surface)
     if mesh.n_components != 4 and mesh.covers_canvas:
         # Shows where a viewer leaves the outermost row of pixels partly uncovered.
-        context.set_source_rgb(*(mesh.colors.mean(axis=0) / 255.0 * np.ones(3)))
+        context.set_source_rgb(*(mesh.plain_colors.mean(axis=0) / 255.0 * np.ones(3)))
         context.paint()
     paint_mesh(mesh, context)
     surface.finish()
@@ -43,7 +43,7 @@ def write_pdf(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) 
 
 def paint_mesh(mesh: Mesh, context: Any) -> None:
     """Paint a mesh on a ``cairocffi.Context``, a pixel of the canvas being a unit of user space."""
-    colors = with_alpha(mesh.colors) / 255.0
+    colors = with_alpha(mesh.plain_colors) / 255.0
     points = mesh.points
     for first in range(0, mesh.n_triangles, _PATTERN_TRIANGLES):
         triangles = mesh.triangles[first : first + _PATTERN_TRIANGLES]

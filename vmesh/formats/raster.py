@@ -9,8 +9,8 @@ from typing import BinaryIO, Final
 import numpy as np
 from PIL import Image
 
-from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill, measure
+from vmesh.arrays import Int32Array, Int64Array, SampleArray, UInt8Array
+from vmesh.kernels.scanline import SUBPIXEL, fill, fill_deep, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Matrix, Mesh, Metadata, Placement
@@ -19,6 +19,7 @@ MAX_SUPERSAMPLE: Final = 16
 
 _BAND_PIXELS: Final = 1 << 22  # drawn at a time when supersampling
 _LONGEST_SIDES: Final = {"JPEG": 65_500, "WEBP": 16_383}
+_DEEP_FORMATS: Final = ("PNG", "TIFF")
 _WHITE: Final = (255, 255, 255)
 _ICC_SPACES: Final = {1: b"GRAY", 3: b"RGB ", 4: b"RGB "}
 
@@ -32,7 +33,7 @@ def render(
     transform: Matrix | None = None,
     supersample: int = 1,
     limits: Limits = DEFAULT_LIMITS,
-) -> UInt8Array:
+) -> SampleArray:
     """Pixels of a mesh.
 
     Every pixel takes the colour at its centre; the centre on an edge belongs to the triangle on
@@ -58,8 +59,9 @@ def render(
     Returns
     -------
     ndarray
-        uint8, shape (h, w) for grey, (h, w, 3) for RGB, (h, w, 4) for RGBA. RGBA too, transparent
-        outside of the mesh, if the transform tilts the canvas.
+        uint8, or uint16 if samples have more than 8 bits; shape (h, w) for grey, (h, w, 3) for
+        RGB, (h, w, 4) for RGBA. RGBA too, transparent outside of the mesh, if the transform tilts
+        the canvas.
 
     Raises
     ------
@@ -91,37 +93,57 @@ def render(
     colors = mesh.colors
     whole = drawn[0] * drawn[1] * SUBPIXEL**2
     if not placement.fills or doubled_area != 2 * whole:
-        colors = with_alpha(colors)
+        colors = with_alpha(colors, mesh.lattice.max_sample)
     if supersample == 1:
-        raster = np.zeros((rows, columns, colors.shape[1]), dtype=np.uint8)
-        fill(positions, triangles, colors, raster)
+        raster = _drawn(positions, triangles, colors, (columns, rows))
     else:
         raster = _supersampled(positions, triangles, colors, (columns, rows), supersample)
     return raster[:, :, 0] if colors.shape[1] == 1 else raster
 
 
+def _drawn(
+    positions: Int64Array, triangles: Int32Array, colors: SampleArray, size: tuple[int, int]
+) -> SampleArray:
+    """Triangles drawn on a raster of their own, shape (h, w, c)."""
+    raster = np.zeros((size[1], size[0], colors.shape[1]), dtype=colors.dtype)
+    if colors.dtype == np.uint8:
+        fill(positions, triangles, colors, raster)
+    else:
+        fill_deep(positions, triangles, colors, raster)
+    return raster
+
+
 def write_raster(
-    raster: UInt8Array,
+    raster: SampleArray,
     stream: BinaryIO,
     format_name: str,
     *,
     metadata: Metadata | None = None,
+    depth: int = 8,
     quality: int = 92,
 ) -> None:
     """Write an image file through Pillow.
 
+    Samples of more than 8 bits are written as 16 bits where Pillow can, which is grey PNG and
+    TIFF, and rounded to 8 elsewhere.
+
     Parameters
     ----------
     raster : ndarray
-        uint8, shape (h, w), (h, w, 3) or (h, w, 4).
+        uint8 or uint16, shape (h, w), (h, w, 3) or (h, w, 4).
     stream : binary file
     format_name : {"PNG", "JPEG", "WEBP", "TIFF"}
         JPEG has no alpha: the picture is laid on white.
     metadata : Metadata, optional
         ICC profile (where it fits the picture's components) and EXIF are written along.
+    depth : int
+        Bits of a sample, 8 for uint8, 9 to 16 for uint16.
     quality : int
         For JPEG and WebP, 1 to 100.
     """
+    if depth > 8:
+        n_bits = 16 if raster.ndim == 2 and format_name in _DEEP_FORMATS else 8
+        raster = rescale(raster, depth, n_bits)
     image = Image.fromarray(raster)
     if max(image.size) > _LONGEST_SIDES.get(format_name, MAX_SIDE):
         raise ValueError(
@@ -197,13 +219,20 @@ def scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
     return positions
 
 
-def with_alpha(colors: UInt8Array) -> UInt8Array:
-    """RGBA of grey, RGB or RGBA colours."""
+def rescale(samples: SampleArray, depth: int, n_bits: int) -> SampleArray:
+    """Samples of a number of bits in another number of bits, 8 or 16, rounded."""
+    largest, wanted = (1 << depth) - 1, (1 << n_bits) - 1
+    wide = (2 * wanted * samples.astype(np.int64) + largest) // (2 * largest)
+    return wide.astype(np.uint8 if n_bits == 8 else np.uint16)
+
+
+def with_alpha(colors: SampleArray, opaque: int = 255) -> SampleArray:
+    """RGBA of grey, RGB or RGBA colours; an alpha of `opaque` where there is none."""
     if colors.shape[1] == 4:
         return colors
-    opaque = np.full((len(colors), 1), 255, dtype=np.uint8)
+    alpha = np.full((len(colors), 1), opaque, dtype=colors.dtype)
     rgb = np.repeat(colors, 3, axis=1) if colors.shape[1] == 1 else colors
-    return np.concatenate([rgb, opaque], axis=1)
+    return np.concatenate([rgb, alpha], axis=1)
 
 
 def _band_rows(columns: int, factor: int, n_triangles: int) -> int:
@@ -214,35 +243,35 @@ def _band_rows(columns: int, factor: int, n_triangles: int) -> int:
 def _supersampled(
     positions: Int64Array,
     triangles: Int32Array,
-    colors: UInt8Array,
+    colors: SampleArray,
     size: tuple[int, int],
     factor: int,
-) -> UInt8Array:
+) -> SampleArray:
     """Means over factor x factor samples, drawn in bands of rows; shape (h, w, c)."""
     columns, rows = size
     n_components = colors.shape[1]
     band_rows = _band_rows(columns, factor, len(triangles))
-    result = np.empty((rows, columns, n_components), dtype=np.uint8)
+    result = np.empty((rows, columns, n_components), dtype=colors.dtype)
     for first in range(0, rows, band_rows):
         last = min(first + band_rows, rows)
-        band = np.zeros(((last - first) * factor, columns * factor, n_components), dtype=np.uint8)
         shifted = positions - np.array([0, first * factor * SUBPIXEL])
-        fill(shifted, triangles, colors, band)
+        band = _drawn(shifted, triangles, colors, (columns * factor, (last - first) * factor))
         blocks = band.reshape(last - first, factor, columns, factor, n_components)
         result[first:last] = _block_means(blocks)
     return result
 
 
-def _block_means(blocks: UInt8Array) -> UInt8Array:
+def _block_means(blocks: SampleArray) -> SampleArray:
     """Means over axes 1 and 3, rounded; colours count in proportion to their alpha."""
     count = blocks.shape[1] * blocks.shape[3]
     if blocks.shape[4] != 4:
         sums = blocks.sum(axis=(1, 3), dtype=np.int64)
-        rounded: UInt8Array = ((2 * sums + count) // (2 * count)).astype(np.uint8)
+        rounded: SampleArray = ((2 * sums + count) // (2 * count)).astype(blocks.dtype)
         return rounded
     alpha = blocks[..., 3:].astype(np.int64)
     covered = alpha.sum(axis=(1, 3))
     sums = (blocks[..., :3] * alpha).sum(axis=(1, 3))
     colors = (2 * sums + covered) // np.maximum(2 * covered, 1)
     means = (2 * covered + count) // (2 * count)
-    return np.concatenate([colors, means], axis=2).astype(np.uint8)
+    whole: SampleArray = np.concatenate([colors, means], axis=2).astype(blocks.dtype)
+    return whole

@@ -72,7 +72,9 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
     from vmesh.formats.raster import render
 
     raster = render(mesh, **options)
-    target.writer()(raster, stream, target.raster_name, metadata=mesh.metadata)
+    target.writer()(
+        raster, stream, target.raster_name, metadata=mesh.metadata, depth=mesh.depth
+    )
 
 
 def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:

@@ -56,7 +56,7 @@ def write_svg(
         raise ValueError(f"expected mode to be one of {', '.join(get_args(Mode))}, got {mode!r}")
     size = {"width": str(mesh.width), "height": str(mesh.height)}
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
-    colors = mesh.colors
+    colors = mesh.plain_colors
     if mode == "flat":
         _check_work(mesh, limits)
     outset = _outset(mesh)

@@ -58,6 +58,8 @@ SPLIT_CONTEXTS = N_AREA_CLASSES * N_SMALL * N_SMALL + N_LARGE * N_LARGE
 SPREADS = (11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016)
 N_SPREADS = 14
 N_UNARY = 14
+MAX_LENGTH = 16  # of the bits of a size beyond that: differences of 16-bit chroma have 17
+LARGEST_DEVIATION = 511
 SIZE_CONTEXTS = N_UNARY + 2
 COMPONENT_CONTEXTS = N_SPREADS * SIZE_CONTEXTS + 3
 
@@ -395,26 +397,20 @@ def code_levels(
     for i in range(order.shape[0]):
         v = order[i]
         for z in range(levels.shape[1]):
-            total, weights, squares = np.int64(0), np.int64(0), np.int64(0)
+            total, weights = np.int64(0), np.int64(0)
             for j in range(starts[i], starts[i + 1]):
-                u = parents[j]
-                level = np.int64(levels[u, z])
                 weight = np.int64(4096)
                 if z > 0:
-                    weight //= 1 + 2 * abs(levels[u, 0] - levels[v, 0])
-                total += weight * level
-                squares += weight * level * level
+                    weight = weight_of(levels[parents[j], 0] - levels[v, 0])
+                total += weight * levels[parents[j], z]
                 weights += weight
             prediction, spread, lean = np.int64(0), N_SPREADS - 1, 0
             if weights > 0:
                 prediction = (2 * total + weights) // (2 * weights)
-                variance = 1024 * (squares * weights - total * total) // (weights * weights)
-                spread = 0
-                while spread < N_SPREADS - 2 and variance >= SPREADS[spread]:
-                    spread += 1
                 # Whether the mean was rounded down or up by more than 3/20.
                 rest = 20 * (total - prediction * weights)
                 lean = 1 if rest > 3 * weights else (2 if rest < -3 * weights else 0)
+                spread = spread_of(levels, z, v, parents[starts[i] : starts[i + 1]], prediction)
             base = z * COMPONENT_CONTEXTS
             context = base + spread * SIZE_CONTEXTS
             error = levels[v, z] - prediction
@@ -433,10 +429,40 @@ def code_levels(
 
 
 @kernel
+def weight_of(difference: int) -> np.int64:
+    """Weight of a parent that differs so much in the first component."""
+    return np.int64(max(4096 // (1 + 2 * abs(difference)), 1))
+
+
+@kernel
+def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, prediction: int) -> int:
+    """Class of the weighted variance of the parents' levels around their mean.
+
+    From the prediction no level counts as further away than LARGEST_DEVIATION, which keeps the
+    sums within 64 bits.
+    """
+    total, weights, squares = np.int64(0), np.int64(0), np.int64(0)
+    for u in parents:
+        weight = np.int64(4096)
+        if z > 0:
+            weight = weight_of(levels[u, 0] - levels[v, 0])
+        deviation = np.int64(levels[u, z]) - prediction
+        deviation = min(max(deviation, -LARGEST_DEVIATION), LARGEST_DEVIATION)
+        total += weight * deviation
+        squares += weight * deviation * deviation
+        weights += weight
+    variance = 1024 * (squares * weights - total * total) // (weights * weights)
+    spread = 0
+    while spread < N_SPREADS - 2 and variance >= SPREADS[spread]:
+        spread += 1
+    return spread
+
+
+@kernel
 def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
     """Code the size of a difference: in unary up to N_UNARY, what is more in bits of its length.
 
-    Uses SIZE_CONTEXTS contexts from c. Returns -1 if it is 2**10 or more beyond N_UNARY.
+    Uses SIZE_CONTEXTS contexts from c. Returns -1 if what is more has over MAX_LENGTH bits.
     """
     coded = 0
     while coded < N_UNARY:
@@ -447,7 +473,7 @@ def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, siz
     length = 0
     while code_bit(coder, data, odds, c + N_UNARY, 1 if rest >> (length + 1) > 0 else 0) == 1:
         length += 1
-        if length > 10:
+        if length > MAX_LENGTH:
             return -1
     value = 1
     for i in range(length):

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
+from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array, UInt16Array
 from vmesh.kernels.jit import kernel
 
 SUBPIXEL = 256
@@ -268,6 +268,41 @@ def fill(
             fill_float(bases, rows, first, last, det, raster)
         else:
             fill_exact(bases, rows, first, last, det, raster)
+
+
+@kernel
+def fill_deep(
+    vertices: Int64Array, triangles: Int32Array, colors: UInt16Array, raster: UInt16Array
+) -> None:
+    """Draw triangles as :func:`fill` does, in samples of up to 16 bits.
+
+    A sample times a doubled area may take 65 bits: the upper and the lower byte of the corners'
+    samples are interpolated apart, and the rest of the first division goes into the second.
+    """
+    height, width, n_components = raster.shape
+    rows = np.empty((height, 2), np.int64)
+    for t in range(triangles.shape[0]):
+        i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x0, y0 = vertices[i, 0], vertices[i, 1]
+        x1, y1 = vertices[j, 0] - x0, vertices[j, 1] - y0
+        x2, y2 = vertices[k, 0] - x0, vertices[k, 1] - y0
+        det = x1 * y2 - x2 * y1
+        if det <= 0:
+            continue
+        first, last = spans(vertices, triangles[t], width, height, rows)
+        for y in range(first, last):
+            dy = (y << 8) + 128 - y0
+            for x in range(rows[y, 0], rows[y, 1]):
+                dx = (x << 8) + 128 - x0
+                w1, w2 = dx * y2 - dy * x2, dy * x1 - dx * y1
+                w0 = det - w1 - w2
+                for z in range(n_components):
+                    c0, c1, c2 = colors[i, z], colors[j, z], colors[k, z]
+                    upper = w0 * (c0 >> 8) + w1 * (c1 >> 8) + w2 * (c2 >> 8)
+                    lower = w0 * (c0 & 255) + w1 * (c1 & 255) + w2 * (c2 & 255)
+                    whole = upper // det
+                    rest = ((upper - whole * det) << 8) + lower
+                    raster[y, x, z] = np.uint16((whole << 8) + (2 * rest + det) // (2 * det))
 
 
 @kernel
