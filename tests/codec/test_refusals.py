@@ -215,7 +215,7 @@ def test_a_length_that_is_too_long_or_not_in_its_shortest_form_is_rejected(
     assert refusal(start + b"M" + length + rest) == code
 
 
-@pytest.mark.parametrize("version", [0x00, 0x02, 0x10, 0x11, 0xFF])
+@pytest.mark.parametrize("version", [0x00, 0x01, 0x0F, 0x20, 0xFF])
 def test_another_version_is_rejected_whatever_its_header_holds(version: int) -> None:
     data = dumps(samples.grey())
     assert refusal(with_header(data, version=version)) == "version"
@@ -282,7 +282,9 @@ def test_a_step_of_zero_is_rejected() -> None:
 
 
 def test_two_components_are_rejected() -> None:
-    assert refusal(with_header(dumps(samples.grey()), b"\1\1", components=1)) == "header"
+    header, contents = split(dumps(samples.grey()))
+    deep = bytes([header[0], header[1] & ~3 | 1, 0b000101]) + header[2:] + b"\1"
+    assert refusal(file_of(deep, contents)) == "header"
 
 
 @pytest.mark.parametrize("name", ["RGB, implied", "RGB, flipped", "RGB, listed"])

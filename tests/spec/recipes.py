@@ -129,7 +129,7 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
     "step 255": lambda: mesh_of(8, 8, 3, n_vertices=30, step=255),
     "9 bits": lambda: mesh_of(8, 8, 3, n_vertices=30, depth=9),
     "12 bits, grey": lambda: mesh_of(16, 12, 1, n_vertices=40, subdivision=1, depth=12),
-    "16 bits, rgba": lambda: flipped(mesh_of(11, 13, 4, n_vertices=40, depth=16), 5),
+    "flipped, 16 bits": lambda: flipped(mesh_of(11, 13, 4, n_vertices=40, depth=16), 5),
     "16 bits, extremes": lambda: corners_only(3, 2, [0, 65535, 65535, 0], depth=16),
     "16 bits, step 1000": lambda: mesh_of(16, 12, 3, n_vertices=60, step=1000, depth=16),
     "16 bits, step 65535": lambda: mesh_of(8, 8, 4, n_vertices=30, step=65535, depth=16),

@@ -36,10 +36,10 @@ from vmesh.arrays import Int32Array
 from vmesh.codec import layout
 from vmesh.codec.hierarchy import Hierarchy
 from vmesh.codec.payloads import Decoder, Encoder, encode
-from vmesh.color_lattice import MAX_STEP, ColorLattice
+from vmesh.color_lattice import ColorLattice
 from vmesh.kernels import entropy
 from vmesh.kernels.scanline import SUBPIXEL, cover, fill
-from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
+from vmesh.limits import MAX_DEPTH, MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 from vmesh.mesh import Mesh, Metadata
 
 _ROOT: Final = Path(__file__).parents[2]
@@ -264,36 +264,37 @@ def test_as_many_flips_as_half_edges_are_read_and_no_more(more: int) -> None:
 
 
 def test_the_size_of_a_difference_has_the_same_bound_by_specification_and_library() -> None:
-    most = 14 + 10
-    assert SPEC["read_size"](Script(lambda i: int(i != most)), 0, 0) == 2**11 + 12
+    most = 14 + 16
+    assert SPEC["read_size"](Script(lambda i: int(i != most)), 0, 0) == 2**17 + 12
     with pytest.raises(SPEC["Invalid"]):
         SPEC["read_size"](Script(lambda i: 1), 0, 0)
 
 
-def assert_same_levels(levels: Int32Array, around: list[list[int]]) -> None:
+def assert_same_levels(levels: Int32Array, around: list[list[int]], depth: int = 8) -> None:
     """Both read the levels of vertices in order, each between parents before it, as written."""
     n, n_components = levels.shape
     starts = np.cumsum([0, *map(len, around)])
     parents = np.array([u for own in around for u in own], dtype=np.int32)
     hierarchy = Hierarchy(np.arange(n, dtype=np.int32), starts, parents)
-    lattice = ColorLattice((1,) * n_components)
+    lattice = ColorLattice((1,) * n_components, depth)
     content = encode(lambda encoder: encoder.levels(levels, hierarchy, lattice))
     assert np.array_equal(Decoder(content, 0).levels(hierarchy, lattice), levels)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(SPEC, "hierarchy", lambda *_: enumerate(around))
         decoder = SPEC["RangeDecoder"](content)
-        read = SPEC["read_levels"](decoder, [(0, 0)] * n, [], lattice.steps)
+        read = SPEC["read_levels"](decoder, [(0, 0)] * n, [], lattice.steps, depth)
     assert read == levels.tolist()
 
 
-@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 4]), st.sampled_from([2, 30, 256]))
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 4]), st.sampled_from([2, 30, 256, 1100, 65_536]))
 def test_levels_between_any_parents_mean_the_same_to_specification_and_library(
     seed: int, n_components: int, n_levels: int
 ) -> None:
     random = np.random.default_rng(seed)
     around = [random.permutation(i)[: random.integers(1, 21)].tolist() for i in range(50)]
     levels = random.integers(0, n_levels, (50, n_components), dtype=np.int32)
-    assert_same_levels(levels, around)
+    levels[:, 1:3] *= random.choice([-1, 1], levels[:, 1:3].shape)
+    assert_same_levels(levels, around, 8 if n_levels <= 256 else 16)
 
 
 @pytest.mark.parametrize("share", range(21))
@@ -454,7 +455,7 @@ def test_the_table_of_the_signature_spells_the_signature() -> None:
 def test_the_tables_of_the_header_match_the_bytes_that_are_packed() -> None:
     rows = table(section(4), "Bytes")
     values = {"width": 300, "height": 20_000, "n": 127}
-    header = layout.Header(300, 20_000, 3, 1, 127, steps=(4, 5, 6))
+    header = layout.Header(300, 20_000, 3, 1, 127, steps=(4, 300, 6), depth=12)
     packed = header.pack()[len(layout.SIGNATURE) :]
     place = 0
     for size, kind, field, _ in rows:
@@ -462,20 +463,27 @@ def test_the_tables_of_the_header_match_the_bytes_that_are_packed() -> None:
             lowest, _, highest = size.partition(" to ")
             coded = varint(values[re.findall("width|height|n", field)[0]])
             assert int(lowest) <= len(coded) <= int(highest)
-        elif size == "c":
-            coded = bytes(header.steps)
+        elif kind == "c varints":
+            coded = b"".join(map(varint, header.steps))
+            assert size == "c or more"
+        elif size == "0 or 1":
+            coded = packed[place : place + 1]
+            assert kind == "u8"
         else:
             coded = packed[place : place + int(size)]
             assert len(coded) == {"u8": 1, "u32": 4}[kind]
         assert packed[place : place + len(coded)] == coded
         place += len(coded)
     assert place == len(packed)
-    assert f"{packed[0] >> 4}.{packed[0] & 15}" == rows[0][3]
-    stored = {"number": header.n_components - 1, "subdivision": 3, "connectivity": 1}
-    for bits, field, _ in table(section(4), "Bits"):
-        first, *_, last = re.findall(r"\d", bits)
-        mask = (1 << int(last) - int(first) + 1) - 1
-        assert packed[1] >> int(first) & mask == stored[re.split(r"\W", field)[0]]
+    assert rows[0][3].startswith(f"{packed[0] >> 4}.{packed[0] & 15}; ")
+    form = {"number": 1, "subdivision": 3, "connectivity": 1}
+    deep = {"number": header.n_components - 1, "depth": 12 - 8, "none": 0}
+    texts = section(4).split("a byte follows it")
+    for byte, stored, text in zip(packed[1:3], (form, deep), texts, strict=True):
+        for bits, field, _ in table(text, "Bits"):
+            first, *_, last = re.findall(r"\d", bits)
+            mask = (1 << int(last) - int(first) + 1) - 1
+            assert byte >> int(first) & mask == stored[re.split(r"\W", field)[0]]
 
 
 def frame_of(data: bytes) -> int:
@@ -488,12 +496,12 @@ def test_the_frame_is_as_long_as_stated(name: str) -> None:
     mesh = MESHES[name]().replaced(metadata=Metadata())
     data = vmesh.dumps(mesh)
     ((_, content),) = split(data)[1]
-    constant = re.search(r"(\d+) \+ c \+ V\(width\)", section(3))
+    constant = re.search(r"(\d+) \+ V\(width\) .* \+ V\(each of the c steps\)", section(3))
     assert constant
 
-    numbers = (mesh.width, mesh.height, mesh.n_vertices, len(content))
+    numbers = (mesh.width, mesh.height, mesh.n_vertices, len(content), *mesh.lattice.steps)
     counted = sum(len(varint(number)) for number in numbers)
-    assert frame_of(data) == int(constant[1]) + mesh.n_components + counted
+    assert frame_of(data) == int(constant[1]) + (mesh.depth != 8) + counted
 
 
 def test_the_examples_of_the_frame_are_as_stated() -> None:
@@ -557,9 +565,9 @@ def test_no_number_is_larger_than_stated() -> None:
         ("6.2", "doubled area of three vertices"): cross(*square[:3]),
         ("6.2", "in-circle determinant"): abs(in_circle(*square[:3], (far // 2, far // 2))),
         ("7.3", "sum of the weights"): 9 * 4096,
-        ("7.3", "sum of weight times level"): 9 * 4096 * 255,
-        ("7.3", "sum of weight times level times level"): 9 * 4096 * 255**2,
-        ("7.4", "numerator of the variance"): 1024 * 255**2 * (9 * 4096) ** 2,
+        ("7.3", "sum of weight times level"): 9 * 4096 * 65_535,
+        ("7.4", "sum of weight times deviation times deviation"): 9 * 4096 * 511**2,
+        ("7.4", "numerator of the variance"): 1024 * 511**2 * (9 * 4096) ** 2,
         ("8.2", "cotangent in sixteenths"): 16 * 2 * far**2,
     }
     assert largest.keys() < sizes.keys()
@@ -604,7 +612,8 @@ def test_the_limits_are_as_stated() -> None:
         "pixels a side": MAX_SIDE,
         "subdivision": MAX_SUBDIVISION,
         "lattice units a side": MAX_LATTICE_SIDE,
-        "colour step": MAX_STEP,
+        "bits of a sample": MAX_DEPTH,
+        "colour step": (1 << MAX_DEPTH) - 1,
         "coded flips for each half-edge": entropy.MAX_FLIPS,
         "bytes in a chunk": 2**31 - 1,
     }
