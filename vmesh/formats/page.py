@@ -29,8 +29,6 @@ class Page:
     ----------
     width, height : float
         In points, 1/72 inch.
-    user_unit : int
-        Points in a unit of the page, 1 but for pages that are longer than 14,400 points.
     """
 
     width: float
@@ -38,7 +36,7 @@ class Page:
 
     @property
     def user_unit(self) -> int:
-        """Points in a unit of the page."""
+        """Points in a unit of the page, 1 but for pages that are longer than 14,400 points."""
         return max(1, ceil(max(self.width, self.height) / _LONGEST_SIDE))
 
 
@@ -79,10 +77,10 @@ def _points_per_pixel(mesh: Mesh) -> tuple[float, float]:
     """Points of a pixel's width and height, by EXIF's resolution; 1 where there is none."""
     exif = read_exif(mesh.metadata.exif)
     inch = _POINTS_IN.get(exif.get(_RESOLUTION_UNIT, 2))
-    densities = [exif.get(tag) for tag in (_X_RESOLUTION, _Y_RESOLUTION)]
-    if inch is None or not all(isinstance(density, Rational) for density in densities):
+    x, y = exif.get(_X_RESOLUTION), exif.get(_Y_RESOLUTION)
+    if inch is None or not (isinstance(x, Rational) and isinstance(y, Rational)):
         return 1.0, 1.0
-    across, down = (float(density) / inch for density in densities)
+    across, down = float(x) / inch, float(y) / inch
     if not (1 / _DENSEST <= across <= _DENSEST and 1 / _DENSEST <= down <= _DENSEST):
         return 1.0, 1.0
     return 1 / across, 1 / down

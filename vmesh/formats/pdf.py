@@ -116,7 +116,7 @@ class _Document:
         """Write the content of the page; the resources that it needs."""
         mesh, colors = self._mesh, self._mesh.colors
         if mesh.n_components == 4 and (colors[:, 3] < 255).any():
-            mask = {"Type": "/Mask", "S": "/Luminosity"}
+            mask: dict[str, Any] = {"Type": "/Mask", "S": "/Luminosity"}
             mask["G"] = self._add(self._group(colors[:, 3:], "/DeviceGray"))
             content.set_state("A")
             content.draw_x_object("P")

@@ -121,7 +121,7 @@ def _write(triangles: Int32Array, path: Int32Array) -> tuple[UInt8Array, Int32Ar
             continue
         start = triangles[t, side % 3]
         end = triangles[t, (side + 1) % 3]
-        shares_b = b == start or b == end
+        shares_b = b in (start, end)
         flags[size] = 1 if shares_b else 2
         vertices[size] = triangles[t, (side + 2) % 3]
         a, b, c = b if shares_b else a, c, vertices[size]
