@@ -89,7 +89,7 @@ class _Document:
         """Write the file."""
         pdf, description = self._pdf, self._description
         xmp = {"Type": "/Metadata", "Subtype": "/XML"}
-        pdf.catalog["Metadata"] = self._add(pydyf.Stream([description.as_xmp()], xmp))
+        pdf.catalog["Metadata"] = self._add(_compressed(description.as_xmp(), xmp))
         for name, text in description.as_information().items():
             pdf.info[name] = pydyf.String(text)
         pdf.write(stream, version=b"1.7", identifier=True, compress=True)

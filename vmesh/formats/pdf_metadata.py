@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import Final
 from xml.sax.saxutils import escape
 
-from vmesh import __version__
 from vmesh.formats.exif import read_exif
 from vmesh.mesh import Metadata
 
-_PRODUCER: Final = f"vmesh {__version__}"
+_PRODUCER: Final = "vmesh"
 _DESCRIPTION, _ARTIST, _COPYRIGHT = 270, 315, 33432
 _DATES: Final = (36867, 306)  # when the picture was taken, when its file was changed
 _DATE: Final = re.compile(r"(\d{4}):([01]\d):([0-3]\d) ([0-2]\d):([0-5]\d):([0-5]\d)")
