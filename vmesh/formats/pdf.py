@@ -29,7 +29,7 @@ from vmesh.mesh import Mesh
 Backend = Literal["native", "cairo"]
 Mode = Literal["exact"]
 
-_LEVEL: Final = 12  # of 12; 4 % smaller than zlib's best, in twice its time
+_LEVEL: Final = 12  # of 12; 3 to 4 % smaller than zlib's best, a tenth of a second for 40,000 triangles
 
 
 def write_pdf(
