@@ -266,6 +266,7 @@ def report_stages(printer: Printer, photograph: Photograph, mesh: Mesh) -> None:
         "to SVG, gradient": lambda: written(lambda stream: write_svg(mesh, stream)),
         "to SVG, flat": lambda: written(lambda stream: write_svg(mesh, stream, mode="flat")),
         "to PDF": lambda: written(lambda stream: write_pdf(mesh, stream)),
+        "to PDF, cairo": lambda: written(lambda stream: write_pdf(mesh, stream, backend="cairo")),
     }
     timings = time_actions(actions, STAGE_RUNS)
     sizes = {"dumps": len(data)}

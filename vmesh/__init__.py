@@ -7,6 +7,7 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG ... by the file's name
+    vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
         PartialFileWarning,
         VmeshError,
     )
+    from vmesh.formats.cairo_pdf import paint_mesh
     from vmesh.formats.raster import render
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
@@ -52,6 +54,7 @@ __all__ = [
     "export",
     "load",
     "loads",
+    "paint_mesh",
     "render",
 ]
 
@@ -72,6 +75,7 @@ _HOMES: Final = {
     "export": "vmesh.formats.registry",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",
+    "paint_mesh": "vmesh.formats.cairo_pdf",
     "render": "vmesh.formats.raster",
 }
 

@@ -163,6 +163,18 @@ def test_vector_commands_take_meshes_and_photographs(
     assert from_mesh.read_bytes() == from_photograph.read_bytes()
 
 
+def test_a_page_has_the_width_and_the_backend_that_are_asked_for(
+    file: Path, tmp_path: Path
+) -> None:
+    page = tmp_path / "page.pdf"
+    succeed("to-pdf", file, page)
+    native = page.stat().st_size
+    succeed("to-pdf", file, page, "--page-width", "2in", "--backend", "cairo", "--mode", "exact")
+    assert page.stat().st_size > 10 * native
+    assert b"[ 0 0 144 96 ]" in page.read_bytes()
+    assert "210mm" in fail(2, "to-pdf", file, page, "--page-width", "wide")
+
+
 def test_a_dash_is_standard_input_and_output() -> None:
     data = succeed("encode", "-", "-", "--vertices", "500", given=COFFEE.read_bytes())
     assert vmesh.loads(data).width == 600

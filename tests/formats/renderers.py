@@ -72,9 +72,19 @@ def draw_with_pdfium(path: Path, scale: int) -> Pixels:
         document.close()
 
 
+def draw_with_ghostscript(path: Path, scale: int) -> Pixels:
+    program = need_program("gs", "ghostscript")
+    options = ["-q", "-dSAFER", "-dBATCH", "-dNOPAUSE", "-sDEVICE=png16m", "-sOutputFile=-"]
+    drawn = subprocess.run(
+        [program, *options, f"-r{72 * scale}", str(path)], check=True, capture_output=True
+    )
+    return _pixels(Image.open(io.BytesIO(drawn.stdout)))
+
+
 SVG_RENDERERS: dict[str, Renderer] = {"librsvg": draw_with_librsvg, "resvg": draw_with_resvg}
 PDF_RENDERERS: dict[str, Renderer] = {
     "poppler": draw_with_poppler,
     "mupdf": draw_with_mupdf,
     "pdfium": draw_with_pdfium,
+    "ghostscript": draw_with_ghostscript,
 }

@@ -10,20 +10,60 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
+from vmesh.formats.page import points_of
 from vmesh.formats.registry import FORMATS
+
+
+def check_length(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+    """A length, or a usage error if it is none."""
+    if value is not None:
+        try:
+            points_of(value)
+        except ValueError as error:
+            raise click.BadParameter(str(error)) from None
+    return value
 
 
 @click.command("to-pdf")
 @click.argument("source", metavar="INPUT")
 @click.argument("target", metavar="OUTPUT")
+@click.option(
+    "--mode",
+    type=click.Choice(("exact",)),
+    default="exact",
+    show_default=True,
+    help="What fills a triangle: PDF holds its colours as they are.",
+)
+@click.option(
+    "--page-width",
+    metavar="LENGTH",
+    callback=check_length,
+    help="Such as 210mm, 8.5in or 400pt; else by the picture's EXIF, else a pixel is 1/72 inch.",
+)
+@click.option(
+    "--backend",
+    type=click.Choice(("native", "cairo")),
+    default="native",
+    show_default=True,
+    help="What writes the page; cairo writes 30 times as much.",
+)
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, quiet: bool, **options: Any) -> None:
-    """Turn a .vmesh file, or a photograph, into a PDF page of its size.
+def command(
+    source: str,
+    target: str,
+    mode: str,
+    page_width: str | None,
+    backend: str,
+    quiet: bool,
+    **options: Any,
+) -> None:
+    """Turn a .vmesh file, or a photograph, into a PDF page.
 
     The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".pdf",))
-    convert(source, target, FORMATS[".pdf"], settings, limits, quiet=quiet)
+    chosen = {"mode": mode, "page_width": page_width, "backend": backend}
+    convert(source, target, FORMATS[".pdf"], settings, limits, quiet=quiet, **chosen)

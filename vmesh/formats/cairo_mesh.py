@@ -17,13 +17,15 @@ def import_cairo() -> ModuleType:
     Raises
     ------
     VmeshError
-        If the cairo library is not installed.
+        If it, or the cairo library that it calls, is not installed.
     """
     try:
         import cairocffi
+    except ImportError:
+        raise VmeshError("drawing with cairo needs cairocffi: pip install cairocffi") from None
     except OSError:
         raise VmeshError(
-            "this output needs the cairo library: install the package libcairo2"
+            "drawing with cairo needs the cairo library: install the package libcairo2"
         ) from None
     module: ModuleType = cairocffi
     return module

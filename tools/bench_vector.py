@@ -1,0 +1,137 @@
+"""Vector output: bytes, seconds, and how close programs that others wrote draw it to our raster.
+
+python tools/bench_vector.py --images DIR [--vertices N ...] [--renderer NAME ...] [--markdown]
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final
+
+import click
+from measurement import (
+    Photograph,
+    Printer,
+    Table,
+    describe_machine,
+    images_option,
+    load_photographs,
+    markdown_option,
+)
+
+import vmesh
+from vmesh.formats.picture import flatten
+from vmesh.mesh import Mesh
+from vmesh.metrics import psnr
+
+N_PHOTOGRAPHS: Final = 3
+VERTICES: Final = (1_000, 5_000, 20_000)
+METHODS: Final = ("adaptive", "blue-noise")
+SCALES: Final = (1, 4)
+_ROOT: Final = Path(__file__).resolve().parent.parent
+
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """A way to write a mesh: the ending of the file's name, and the options of `export`."""
+
+    name: str
+    suffix: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+MODES: Final = (
+    Mode("PDF exact", ".pdf"),
+    Mode("PDF cairo", ".pdf", {"backend": "cairo"}),
+)
+
+
+@click.command()
+@images_option
+@markdown_option
+@click.option("--vertices", multiple=True, type=click.IntRange(4), default=VERTICES)
+@click.option("--renderer", "wanted", multiple=True, help="All that are installed unless given.")
+def main(folder: Path, markdown: bool, vertices: tuple[int, ...], wanted: tuple[str, ...]) -> None:
+    """Measure vector output on the first three photographs of a folder."""
+    printer = Printer(markdown)
+    printer.heading("Vector output")
+    renderers = installed_renderers(wanted)
+    for photograph in load_photographs(folder)[:N_PHOTOGRAPHS]:
+        for n in vertices:
+            for method in METHODS:
+                report(printer, photograph, n, method, renderers)
+    printer.paragraph(
+        "dB is the PSNR over RGB against our own raster at "
+        f"{' and '.join(f'{scale}x' for scale in SCALES)}; s is the time of the latter drawing, "
+        "with the start of the program where it is one. Single runs."
+    )
+    printer.paragraph(describe_machine())
+
+
+def installed_renderers(wanted: tuple[str, ...]) -> dict[str, dict[str, Any]]:
+    """What draws files, by the ending of their names and by the renderer's name."""
+    sys.path.append(str(_ROOT))
+    known = import_module("tests.formats.renderers")
+    tables = {".pdf": known.PDF_RENDERERS, ".svg": known.SVG_RENDERERS}
+    return {
+        suffix: {name: draw for name, draw in table.items() if not wanted or name in wanted}
+        for suffix, table in tables.items()
+    }
+
+
+def report(
+    printer: Printer,
+    photograph: Photograph,
+    n: int,
+    method: str,
+    renderers: Mapping[str, Mapping[str, Any]],
+) -> None:
+    """Print the table of one mesh: a row for each mode and renderer."""
+    mesh = vmesh.encode(photograph.pixels, method=method, vertices=n)
+    size = len(vmesh.dumps(mesh))
+    columns = ("mode", "renderer", "bytes", "x .vmesh", "B / triangle", "write s")
+    header = (*columns, *(f"{scale}x dB" for scale in SCALES), "draw s")
+    title = f"{photograph.name}, {method}, {mesh.n_vertices} vertices, .vmesh of {size} bytes"
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for mode in MODES:
+            path = Path(folder, f"picture{mode.suffix}")
+            started = time.perf_counter()
+            vmesh.export(mesh, path, **mode.options)
+            seconds = time.perf_counter() - started
+            written = path.stat().st_size
+            figures = (str(written), f"{written / size:.2f}", f"{written / mesh.n_triangles:.2f}")
+            for name, drawn in drawings(mesh, path, renderers[mode.suffix]):
+                rows.append((mode.name, name, *figures, f"{seconds:.2f}", *drawn))
+    printer.table(Table(title, header, rows, n_words=2))
+
+
+def drawings(
+    mesh: Mesh, path: Path, renderers: Mapping[str, Any]
+) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Names of renderers, and how close and how fast they draw a file."""
+    skipped = import_module("_pytest.outcomes").Skipped
+    for name, draw in renderers.items():
+        cells = []
+        seconds = 0.0
+        try:
+            for scale in SCALES:
+                started = time.perf_counter()
+                drawn = draw(path, scale)
+                seconds = time.perf_counter() - started
+                ours = flatten(vmesh.render(mesh, scale=scale))
+                cells.append(f"{psnr(drawn, ours):.1f}")
+        except skipped:
+            yield name, ("missing",) * len(SCALES) + ("-",)
+            continue
+        yield name, (*cells, f"{seconds:.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,24 @@
+"""What a picture's EXIF block says."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from PIL import Image
+from PIL.TiffImagePlugin import IFDRational as Rational
+
+__all__ = ["Rational", "read_exif"]
+
+_DETAILS: Final = 0x8769  # tag of the second directory, with the camera's entries
+
+
+def read_exif(block: bytes) -> dict[int, Any]:
+    """Entries of the first two directories of an EXIF block by their tags, none if it is damaged."""
+    if not block:
+        return {}
+    exif = Image.Exif()
+    try:
+        exif.load(b"Exif\0\0" + block)
+        return {**exif.get_ifd(_DETAILS), **exif}
+    except Exception:  # Pillow fails on blocks that make no sense with errors of any kind
+        return {}
