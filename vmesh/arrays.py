@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 UInt8Array: TypeAlias = npt.NDArray[np.uint8]
 UInt16Array: TypeAlias = npt.NDArray[np.uint16]
-SampleArray: TypeAlias = npt.NDArray[np.uint8] | npt.NDArray[np.uint16]
-"""Samples of 8 bits, or of 9 to 16."""
+SampleArray: TypeAlias = npt.NDArray[Any]
+"""Samples: uint8, or uint16 for 9 to 16 bits; which of them depends on the picture."""
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
 Int64Array: TypeAlias = npt.NDArray[np.int64]

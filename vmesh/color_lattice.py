@@ -105,7 +105,7 @@ class ColorLattice:
         Parameters
         ----------
         colors : array_like
-            Shape (n, c), samples of 0 to 255, or up to `max_sample`, in the order grey, RGB or RGBA.
+            Shape (n, c), samples of 0 to `max_sample` in the order grey, RGB or RGBA.
 
         Returns
         -------

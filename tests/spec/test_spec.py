@@ -38,7 +38,7 @@ from vmesh.codec.hierarchy import Hierarchy
 from vmesh.codec.payloads import Decoder, Encoder, encode
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels import entropy
-from vmesh.kernels.scanline import SUBPIXEL, cover, fill
+from vmesh.kernels.scanline import SUBPIXEL, cover
 from vmesh.limits import MAX_DEPTH, MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
 from vmesh.mesh import Mesh, Metadata
 
@@ -286,7 +286,11 @@ def assert_same_levels(levels: Int32Array, around: list[list[int]], depth: int =
     assert read == levels.tolist()
 
 
-@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 4]), st.sampled_from([2, 30, 256, 1100, 65_536]))
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([1, 3, 4]),
+    st.sampled_from([2, 30, 256, 1100, 65_536]),
+)
 def test_levels_between_any_parents_mean_the_same_to_specification_and_library(
     seed: int, n_components: int, n_levels: int
 ) -> None:

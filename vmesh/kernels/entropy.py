@@ -435,7 +435,7 @@ def weight_of(difference: int) -> np.int64:
 
 
 @kernel
-def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, prediction: int) -> int:
+def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, prediction: np.int64) -> int:
     """Class of the weighted variance of the parents' levels around their mean.
 
     From the prediction no level counts as further away than LARGEST_DEVIATION, which keeps the
@@ -446,8 +446,9 @@ def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, predictio
         weight = np.int64(4096)
         if z > 0:
             weight = weight_of(levels[u, 0] - levels[v, 0])
-        deviation = np.int64(levels[u, z]) - prediction
-        deviation = min(max(deviation, -LARGEST_DEVIATION), LARGEST_DEVIATION)
+        deviation = np.int64(
+            min(max(levels[u, z] - prediction, -LARGEST_DEVIATION), LARGEST_DEVIATION)
+        )
         total += weight * deviation
         squares += weight * deviation * deviation
         weights += weight
