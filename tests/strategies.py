@@ -43,11 +43,15 @@ def _doubled_area(vertices: Int32Array, a: int, b: int, c: int) -> int:
 
 
 def lattices() -> st.SearchStrategy[ColorLattice]:
-    """Steps of grey, RGB and RGBA."""
-    step = st.integers(1, 255)
+    """Steps of grey, RGB and RGBA, in samples of 8 bits and of more."""
+    return st.sampled_from([8, 8, 8, 9, 12, 16]).flatmap(_lattices_of)
+
+
+def _lattices_of(depth: int) -> st.SearchStrategy[ColorLattice]:
+    step = st.integers(1, (1 << depth) - 1)
     return st.one_of(
         st.tuples(step), st.tuples(step, step, step), st.tuples(step, step, step, step)
-    ).map(ColorLattice)
+    ).map(lambda steps: ColorLattice(steps, depth))
 
 
 def metadata() -> st.SearchStrategy[Metadata]:

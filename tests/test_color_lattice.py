@@ -18,9 +18,10 @@ def sampled_colors(n_components: int) -> np.typing.NDArray[np.int64]:
 
 
 @pytest.mark.parametrize("n_components", [1, 3, 4])
-def test_steps_of_one_keep_every_color(n_components: int) -> None:
-    lattice = ColorLattice.uniform(n_components, 1)
-    colors = sampled_colors(n_components)
+@pytest.mark.parametrize("depth", [8, 9, 12, 16])
+def test_steps_of_one_keep_every_color(n_components: int, depth: int) -> None:
+    lattice = ColorLattice.uniform(n_components, 1, depth)
+    colors = sampled_colors(n_components) * lattice.max_sample // 255
     levels = lattice.levels_from_colors(colors)
     assert np.array_equal(lattice.colors_from_levels(levels), colors)
 
@@ -43,7 +44,7 @@ def test_levels_of_any_color_are_nearest_and_within_bounds(lattice: ColorLattice
     assert (levels >= lowest).all()
     assert (levels <= highest).all()
     # Rounding to the nearest level moves a value of a lattice of steps 1 by half a step at most.
-    exact = ColorLattice((1,) * lattice.n_components).levels_from_colors(colors)
+    exact = ColorLattice((1,) * lattice.n_components, lattice.depth).levels_from_colors(colors)
     assert (2 * abs(levels * np.array(lattice.steps) - exact) <= np.array(lattice.steps)).all()
 
 
@@ -59,7 +60,8 @@ def test_levels_of_a_drawn_color_stay_close_to_it(lattice: ColorLattice) -> None
 def test_every_level_within_bounds_is_a_color(lattice: ColorLattice) -> None:
     for levels in lattice.level_bounds():
         colors = lattice.colors_from_levels(levels[None])
-        assert colors.dtype == np.uint8
+        assert colors.dtype == (np.uint8 if lattice.depth == 8 else np.uint16)
+        assert colors.max() <= lattice.max_sample
         assert colors.shape == (1, lattice.n_components)
 
 
@@ -91,6 +93,12 @@ def test_uniform_steps(n_components: int, step: int, steps: tuple[int, ...]) -> 
 def test_steps_out_of_range_are_refused(steps: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match="expected"):
         ColorLattice(steps)
+
+
+@pytest.mark.parametrize("depth", [7, 17])
+def test_depths_out_of_range_are_refused(depth: int) -> None:
+    with pytest.raises(ValueError, match="8 to 16 bits"):
+        ColorLattice((1,), depth)
 
 
 @given(st.sampled_from([(3,), (2, 3), (2, 4), (2, 2, 3)]))

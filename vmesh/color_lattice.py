@@ -32,8 +32,6 @@ from vmesh.arrays import Int32Array, SampleArray
 from vmesh.limits import MAX_DEPTH
 
 PLAIN_DEPTH: Final = 8
-MAX_STEP: Final = 255
-"""The largest step of colours of 8 bits."""
 
 # The squared error of a unit of Y, Co, Cg counts 3, 1/2 and 3/4 in the sum over R, G, B, which
 # would balance steps of 1 : 2.4 : 2. Finer chroma serves as well: at 2 and 4 % of the pixels of

@@ -436,7 +436,7 @@ def test_goals_that_contradict_each_other_are_refused() -> None:
         encode(noise(8, 8), method="blue-noise", quality=50)
 
 
-@pytest.mark.parametrize("dtype", [np.uint16, np.int32, np.float32, np.float64, bool, object])
+@pytest.mark.parametrize("dtype", [np.int16, np.int32, np.float32, np.float64, bool, object])
 def test_a_picture_of_another_dtype_is_refused(dtype: type) -> None:
     with pytest.raises(TypeError, match="uint8"):
         encode(np.zeros((4, 4, 3), dtype=dtype))
@@ -481,3 +481,45 @@ def test_sampled_colors_are_those_of_the_vertices_pixels() -> None:
     pixels = [(0, 0), (0, 0), (2, 3), (2, 3), (0, 3), (2, 1)]
     expected = [picture[y, x].tolist() for y, x in pixels]
     assert sample_colors(picture, vertices, 2).tolist() == expected
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"vertices": 300},
+        {"quality": 70},
+        {"target_psnr": 31.0},
+        {"vertices": 300, "effort": 1},
+        {"vertices": 300, "method": "blue-noise"},
+    ],
+    ids=str,
+)
+def test_sixteen_bits_are_encoded_as_well_as_eight(
+    cup: UInt8Array, options: dict[str, Any]
+) -> None:
+    plain = encode(cup, **options)
+    deep = encode(cup.astype(np.uint16) * 257, **options)
+    assert (plain.depth, deep.depth) == (8, 16)
+    rounded = (loads(dumps(deep)).colors.astype(int) + 128) // 257
+    assert rounded.max() <= 255
+    shown = (drawn(deep).astype(float) / 257).clip(0, 255)
+    assert abs(psnr(shown, cup) - psnr(drawn(plain), cup)) < 0.5
+    assert len(dumps(deep)) < 1.1 * len(dumps(plain))
+
+
+def test_more_bits_hold_what_eight_would_round_away() -> None:
+    y, x = np.mgrid[:48, :64]
+    soft = (30_000 + 150 * np.sin(x / 9) + 2 * y).astype(np.uint16)
+    shown = drawn(encode(soft, vertices=400)).astype(float)
+    assert np.abs(shown - soft).max() < 60  # of 257 in a level of eight bits
+
+
+def test_sixteen_bits_with_alpha_are_encoded(cup: UInt8Array) -> None:
+    alpha = np.full(cup.shape[:2], 65_535, dtype=np.uint16)
+    alpha[:, :40] = 0
+    deep = np.dstack([cup.astype(np.uint16) * 257, alpha])
+    mesh = encode(deep, vertices=300)
+    mesh.check()
+    shown = drawn(mesh)
+    assert abs(shown[:, 60:, 3].astype(int) - 65_535).max() < 2000
+    assert shown[:, :30, 3].max() < 2000

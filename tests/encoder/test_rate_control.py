@@ -42,7 +42,7 @@ def test_psnr_counts_colors_as_far_as_they_are_seen() -> None:
 
 
 def test_a_price_falls_with_the_quality() -> None:
-    prices = [price_of_quality(quality) for quality in range(101)]
+    prices = [price_of_quality(quality, 255) for quality in range(101)]
     assert prices == sorted(prices, reverse=True)
     assert len(set(prices)) == 101
     assert prices[-1] > 0

@@ -45,10 +45,13 @@ def test_pictures_of_every_mode_are_read(mode: str, shape: tuple[int, ...]) -> N
     assert picture.array.dtype == np.uint8
 
 
-def test_sixteen_bit_samples_are_rounded_to_eight() -> None:
+def test_grey_of_sixteen_bits_stays_what_it_is() -> None:
     wide = np.array([[0, 128, 129, 257 * 100, 65535]], dtype=np.uint16)
     picture = read_picture(saved(Image.fromarray(wide)))
-    assert picture.array.tolist() == [[0, 0, 1, 100, 255]]
+    assert picture.array.dtype == np.uint16
+    assert picture.array.tolist() == wide.tolist()
+    # And is rounded where 8 bits are wanted.
+    assert flatten(picture.array)[0, :, 0].tolist() == [0, 0, 1, 100, 255]
 
 
 def test_a_transparent_palette_color_becomes_alpha() -> None:

@@ -126,8 +126,8 @@ def test_sizes_come_back(sizes: list[int]) -> None:
 def test_a_size_of_too_many_bits_is_refused() -> None:
     coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.SIZE_CONTEXTS)
     entropy.start(coder, as_bytes(bytes(64)), 0)
-    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**11 + 12) == 2**11 + 12
-    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**11 + 13) == -1
+    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**17 + 12) == 2**17 + 12
+    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**17 + 13) == -1
     odds = entropy.even_odds(entropy.SIZE_CONTEXTS)
     entropy.start(coder, as_bytes(bytes(64)), 1)  # Zeros are read as ones for ever.
     assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 0) == -1

@@ -127,6 +127,7 @@ def sweep(problem: Problem, kept: Bookkeeping, price: float) -> int:
         kept.residual,
         problem.steps,
         price,
+        255,
         problem.lowest,
         problem.highest,
         problem.levels,

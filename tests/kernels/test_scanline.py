@@ -10,25 +10,25 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.pictures import noise
 from tests.strategies import meshes
-from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, accumulate, cover, fill, label
+from vmesh.arrays import Int32Array, Int64Array, SampleArray
+from vmesh.kernels.scanline import SUBPIXEL, accumulate, cover, draw, label
 from vmesh.mesh import Mesh
 
 ONE_TRIANGLE = np.array([[0, 1, 2]], dtype=np.int32)
 
 
 def filled(
-    vertices: Int64Array, triangles: Int32Array, colors: UInt8Array, height: int, width: int
-) -> UInt8Array:
-    raster = np.full((height, width, colors.shape[1]), 99, dtype=np.uint8)
-    fill(vertices, triangles, colors, raster)
+    vertices: Int64Array, triangles: Int32Array, colors: SampleArray, height: int, width: int
+) -> SampleArray:
+    raster = np.full((height, width, colors.shape[1]), 99, dtype=colors.dtype)
+    draw(vertices, triangles, colors, raster)
     return raster
 
 
 def filled_slowly(
-    vertices: Int64Array, triangles: Int32Array, colors: UInt8Array, height: int, width: int
-) -> UInt8Array:
-    raster = np.full((height, width, colors.shape[1]), 99, dtype=np.uint8)
+    vertices: Int64Array, triangles: Int32Array, colors: SampleArray, height: int, width: int
+) -> SampleArray:
+    raster = np.full((height, width, colors.shape[1]), 99, dtype=colors.dtype)
     twins.fill(vertices, triangles.tolist(), colors, raster)
     return raster
 
@@ -173,6 +173,16 @@ def test_cover_takes_triangles_turned_either_way() -> None:
     counts = np.zeros((10, 10), dtype=np.uint8)
     cover(vertices, np.array([[0, 1, 2], [0, 2, 1]], dtype=np.int32), counts)
     assert set(counts.ravel().tolist()) == {0, 2}
+
+
+@pytest.mark.parametrize("side", [1 << 16, 1 << 24])
+def test_deep_samples_are_exact_on_the_largest_triangles(side: int) -> None:
+    vertices = np.array([(-side, -side), (side, -side // 3), (-side // 5, side)], dtype=np.int64)
+    triangles = np.array([(0, 1, 2)], dtype=np.int32)
+    random = np.random.default_rng(side)
+    for colors in (random.integers(0, 65_536, (3, 3)), np.array([[65_535] * 3, [0] * 3, [1] * 3])):
+        arguments = vertices, triangles, colors.astype(np.uint16), 6, 9
+        assert np.array_equal(filled(*arguments), filled_slowly(*arguments))
 
 
 @given(meshes())

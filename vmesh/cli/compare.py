@@ -52,6 +52,6 @@ def _pixels(path: str, limits: Limits, size: tuple[int, int] | None) -> UInt8Arr
     given = read_mesh_or_photograph(path, limits)
     if isinstance(given, Mesh):
         width, height = size or (given.width, given.height)
-        return flatten(render(given, limits=limits, width=width, height=height))
+        return flatten(render(given, limits=limits, width=width, height=height), given.depth)
     pixels = flatten(given.array)
     return pixels if size is None else resize(pixels, size)

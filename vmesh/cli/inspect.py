@@ -65,7 +65,7 @@ def draw(array: UInt8Array, settings: Settings, show: str, limits: Limits) -> UI
     salience, samples = propose(image, settings)
     mesh = encode(array, **asdict(settings))
     limits.check_vertices(mesh.n_vertices)
-    original, rendered = flatten(array), flatten(render(mesh, limits=limits))
+    original, rendered = flatten(array), flatten(render(mesh, limits=limits), mesh.depth)
 
     def points() -> UInt8Array:
         vertices = mesh.vertices

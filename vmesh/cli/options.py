@@ -8,10 +8,10 @@ from typing import Any, TypeVar, get_args
 
 import click
 
-from vmesh.color_lattice import MAX_STEP
 from vmesh.encoder.settings import (
     DEFAULT_EFFORT,
     DEFAULT_QUALITY,
+    MAX_COLOR_STEP,
     MAX_EFFORT,
     MAX_QUALITY,
     ColorMode,
@@ -93,7 +93,7 @@ _ENCODER_OPTIONS = (
     ),
     click.option(
         "--color-step",
-        type=click.IntRange(1, MAX_STEP),
+        type=click.IntRange(1, MAX_COLOR_STEP),
         help="Rounding of the vertex colours, 1 for none; follows from the error unless given.",
     ),
     click.option(

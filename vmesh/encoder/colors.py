@@ -7,7 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, Int32Array, UInt8Array
+from vmesh.arrays import Float64Array, Int32Array, SampleArray
+from vmesh.encoder.image import peak_of
 from vmesh.kernels.least_squares import solve
 from vmesh.kernels.scanline import SUBPIXEL, accumulate
 
@@ -17,13 +18,13 @@ _MAX_STEPS: Final = 200
 _HIDDEN_WEIGHT: Final = 1e-4  # of a transparent pixel's colour, so that the system stays regular
 
 
-def sample_colors(image: UInt8Array, vertices: Int32Array, unit: int) -> Float64Array:
+def sample_colors(image: SampleArray, vertices: Int32Array, unit: int) -> Float64Array:
     """Colours of the pixels that the vertices lie in; the paper's choice.
 
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     vertices : ndarray
         Shape (n, 2), int32, in lattice units.
     unit : int
@@ -61,7 +62,7 @@ class NormalEquations:
 
 
 def fit_colors(
-    image: UInt8Array, vertices: Int32Array, triangles: Int32Array, unit: int
+    image: SampleArray, vertices: Int32Array, triangles: Int32Array, unit: int
 ) -> tuple[Float64Array, list[NormalEquations]]:
     """Colours that make the rendered mesh closest to the picture in squared error.
 
@@ -73,7 +74,7 @@ def fit_colors(
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     vertices, triangles : ndarray
         Shapes (n, 2) and (m, 3), int32; they cover the picture.
     unit : int
@@ -82,7 +83,7 @@ def fit_colors(
     Returns
     -------
     colors : ndarray
-        Shape (n, c), float64, 0 to 255.
+        Shape (n, c), float64, 0 to the largest sample.
     equations : list of NormalEquations
         What was solved, for each sample component.
     """
@@ -90,7 +91,7 @@ def fit_colors(
     whole = np.ones(image.shape[:2])
     if image.shape[2] != 4:
         return fit_components(image, whole, vertices, triangles, unit, start)
-    visible = np.maximum(image[:, :, 3] / 255.0, _HIDDEN_WEIGHT)
+    visible = np.maximum(image[:, :, 3] / peak_of(image), _HIDDEN_WEIGHT)
     colors, first = fit_components(
         image[:, :, :3], visible, vertices, triangles, unit, start[:, :3]
     )
@@ -99,7 +100,7 @@ def fit_colors(
 
 
 def fit_components(
-    image: UInt8Array,
+    image: SampleArray,
     weights: Float64Array,
     vertices: Int32Array,
     triangles: Int32Array,
@@ -111,7 +112,7 @@ def fit_components(
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     weights : ndarray
         Shape (h, w), float64, 0 or more.
     vertices, triangles, unit
@@ -122,7 +123,7 @@ def fit_components(
     Returns
     -------
     colors : ndarray
-        Shape (n, c), float64, 0 to 255.
+        Shape (n, c), float64, 0 to the largest sample.
     equations : list of NormalEquations
         What was solved, for each component.
     """
@@ -134,4 +135,4 @@ def fit_components(
     initial = np.ascontiguousarray(start)
     fitted = solve(triangles, products, moments, _RIDGE, initial, _TOLERANCE, _MAX_STEPS)
     equations = [NormalEquations(triangles, products, column) for column in moments.T]
-    return np.clip(fitted, 0.0, 255.0), equations
+    return np.clip(fitted, 0.0, float(peak_of(image))), equations

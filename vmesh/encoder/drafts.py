@@ -9,9 +9,10 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from vmesh.arrays import Int32Array, UInt8Array
-from vmesh.color_lattice import MAX_STEP, ColorLattice
+from vmesh.arrays import Int32Array, SampleArray
+from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors
+from vmesh.encoder.image import depth_of, peak_of
 from vmesh.encoder.quantization import quantize
 from vmesh.encoder.sampling import Samples
 from vmesh.kernels.delaunay import delaunay
@@ -54,12 +55,12 @@ class SampledDraft:
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     propose : callable
         Samples of about a number of vertices.
     """
 
-    def __init__(self, image: UInt8Array, propose: Callable[[int], Samples], n: int) -> None:
+    def __init__(self, image: SampleArray, propose: Callable[[int], Samples], n: int) -> None:
         self._image = image
         self._propose = propose
         self.resize(n)
@@ -74,7 +75,7 @@ class SampledDraft:
         fitted = sum(float(e.moments @ colors[:, z]) for z, e in enumerate(equations))
         squares = np.square(self._image, dtype=np.float64)
         if self._image.shape[2] == 4:
-            squares[:, :, :3] *= self._image[:, :, 3:] / 255.0
+            squares[:, :, :3] *= self._image[:, :, 3:] / peak_of(self._image)
         self.error = max(0.0, float(squares.sum()) - fitted)
 
     def geometry(self) -> tuple[Int32Array, Int32Array]:
@@ -89,13 +90,13 @@ class Finisher:
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     metadata : Metadata
     color_step : int or None
         Step of the luma lattice; None lets the error decide.
     """
 
-    image: UInt8Array
+    image: SampleArray
     metadata: Metadata
     color_step: int | None
 
@@ -107,7 +108,8 @@ class Finisher:
         step = self.color_step
         if step is None:
             step = round(_STEP * sqrt(draft.error / self.image.size))
-        lattice = ColorLattice.uniform(n_components, min(max(step, 1), MAX_STEP))
+            step = min(max(step, 1), peak_of(self.image))
+        lattice = ColorLattice.uniform(n_components, step, depth_of(self.image))
         # Who asks for no rounding wants the fitted colours as they are.
         price = 0.0 if self.color_step == 1 else price_of(draft)
         levels = quantize(equations, colors, vertices, lattice, price)

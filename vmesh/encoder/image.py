@@ -6,15 +6,15 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
-from vmesh.arrays import UInt8Array
+from vmesh.arrays import SampleArray
 from vmesh.limits import MAX_SIDE
 
 
-def as_image(array: npt.ArrayLike) -> UInt8Array:
-    """The picture as a contiguous array of shape (h, w, c), uint8, c being 1, 3 or 4."""
+def as_image(array: npt.ArrayLike) -> SampleArray:
+    """The picture as a contiguous array of shape (h, w, c), c being 1, 3 or 4."""
     given = np.asarray(array)
-    if given.dtype != np.uint8:
-        raise TypeError(f"expected a picture of uint8, got {given.dtype}")
+    if given.dtype not in (np.uint8, np.uint16):
+        raise TypeError(f"expected a picture of uint8 or uint16, got {given.dtype}")
     if given.ndim == 2:
         given = given[:, :, None]
     if given.ndim != 3 or given.shape[2] not in (1, 3, 4):
@@ -29,11 +29,21 @@ def as_image(array: npt.ArrayLike) -> UInt8Array:
     return np.ascontiguousarray(given)
 
 
-def with_hidden_colors_replaced(image: UInt8Array) -> UInt8Array:
+def depth_of(image: SampleArray) -> int:
+    """Bits of a picture's samples."""
+    return 8 * image.dtype.itemsize
+
+
+def peak_of(image: SampleArray) -> int:
+    """The largest sample that a picture may hold."""
+    return (1 << depth_of(image)) - 1
+
+
+def with_hidden_colors_replaced(image: SampleArray) -> SampleArray:
     """The picture with each fully transparent pixel in the colour of the nearest visible one.
 
     What is hidden there would show where the mesh's alpha reaches a little further than that of
-    the picture. `image` has shape (h, w, c), uint8; only RGBA pictures change.
+    the picture. `image` has shape (h, w, c); only RGBA pictures change.
     """
     if image.shape[2] != 4 or image[:, :, 3].all():
         return image
@@ -47,10 +57,11 @@ def with_hidden_colors_replaced(image: UInt8Array) -> UInt8Array:
     return filled
 
 
-def visible_planes(image: UInt8Array) -> UInt8Array:
-    """Planes of a picture, shape (c, h, w), uint8, colours multiplied by alpha."""
+def visible_planes(image: SampleArray) -> SampleArray:
+    """Planes of a picture, shape (c, h, w), colours multiplied by alpha."""
     planes = np.ascontiguousarray(image.transpose(2, 0, 1))
     if len(planes) == 4:
-        alpha = planes[3].astype(np.uint16)
-        planes[:3] = (planes[:3] * alpha + 127) // 255
+        peak = peak_of(image)
+        alpha = planes[3].astype(np.uint32)
+        planes[:3] = (planes[:3] * alpha + peak // 2) // peak
     return planes

@@ -9,11 +9,17 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import UInt8Array, UInt16Array
+from vmesh.arrays import SampleArray, UInt16Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
 from vmesh.encoder.drafts import SUBDIVISION, UNIT, Draft, Finisher, SampledDraft, price_of
-from vmesh.encoder.image import as_image, visible_planes, with_hidden_colors_replaced
+from vmesh.encoder.image import (
+    as_image,
+    depth_of,
+    peak_of,
+    visible_planes,
+    with_hidden_colors_replaced,
+)
 from vmesh.encoder.rate_control import (
     guess_vertices,
     meet_psnr,
@@ -72,7 +78,8 @@ def encode(
     Parameters
     ----------
     array : array_like
-        Shape (h, w), (h, w, 3) or (h, w, 4), uint8: grey, RGB or RGBA, alpha not multiplied.
+        Shape (h, w), (h, w, 3) or (h, w, 4), uint8 or uint16: grey, RGB or RGBA, alpha not
+        multiplied. The mesh has samples of as many bits.
     metadata : Metadata, optional
         What travels with the picture.
     progress : callable, optional
@@ -113,13 +120,13 @@ def count_steps(settings: Settings) -> int:
     return 3 + _THINNING_STEPS + _REFINEMENT_STEPS[settings.effort]
 
 
-def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples]:
+def propose(image: SampleArray, settings: Settings) -> tuple[UInt16Array, Samples]:
     """Salience of a picture and the points sampled from it, before any thinning.
 
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     settings : Settings
         With a number of vertices or a density; otherwise gamma decides on the number of points.
 
@@ -142,7 +149,7 @@ def propose(image: UInt8Array, settings: Settings) -> tuple[UInt16Array, Samples
 
 
 def _encode_blue_noise(
-    image: UInt8Array, settings: Settings, metadata: Metadata, report: Progress
+    image: SampleArray, settings: Settings, metadata: Metadata, report: Progress
 ) -> Mesh:
     """The method of the paper: vertices stay where they are sampled."""
     height, width, n_components = image.shape
@@ -155,12 +162,13 @@ def _encode_blue_noise(
         colors, _ = fit_colors(image, vertices, triangles, UNIT)
     else:
         colors = sample_colors(image, vertices, UNIT)
-    lattice = ColorLattice.uniform(n_components, settings.color_step or _BLUE_NOISE_STEP)
+    step = settings.color_step or _BLUE_NOISE_STEP * peak_of(image) // 255
+    lattice = ColorLattice.uniform(n_components, step, depth_of(image))
     levels = lattice.levels_from_colors(np.rint(colors))
     return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, metadata)
 
 
-def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
+def _sampled_draft(image: SampleArray, settings: Settings) -> Draft:
     """Vertices where they are sampled, as many as the settings ask for."""
     height, width = image.shape[:2]
 
@@ -171,7 +179,7 @@ def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
     wanted = _wanted_vertices(settings, width, height)
     draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
     if wanted is None and settings.target_psnr is None:
-        price = price_of_quality(_quality(settings))
+        price = price_of_quality(_quality(settings), peak_of(image))
         for _ in range(2):
             # The price falls with about the 1.6th power of the number of vertices.
             factor = (price_of(draft) / price) ** (1 / 1.6)
@@ -180,7 +188,7 @@ def _sampled_draft(image: UInt8Array, settings: Settings) -> Draft:
 
 
 def _remesh(
-    image: UInt8Array, settings: Settings, finisher: Finisher, report: Progress, run: Run
+    image: SampleArray, settings: Settings, finisher: Finisher, report: Progress, run: Run
 ) -> Draft:
     """The vertices of a dense sample that matter most, moved to better places."""
     height, width = image.shape[:2]
@@ -213,10 +221,10 @@ def _thin(
     if wanted is not None:
         draft.thin(wanted, report)
     elif settings.target_psnr is not None:
-        allowed = draft.n_samples * 255.0**2 / 10.0 ** (settings.target_psnr / 10.0)
+        allowed = draft.n_samples * draft.peak**2 / 10.0 ** (settings.target_psnr / 10.0)
         draft.thin(4, report, max_error=_REFINEMENT_GAIN * allowed)
     else:
-        price = price_of_quality(_quality(settings))
+        price = price_of_quality(_quality(settings), draft.peak)
         draft.thin(4, report, max_cost=_VERTEX_BITS * price)
 
 

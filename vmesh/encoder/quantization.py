@@ -63,7 +63,7 @@ def quantize(
         # Luma, grey and alpha are cut off at the largest sample.
         shown = levels.astype(np.float64)
         for z in (0, 3)[: 2 if n_components == 4 else 1]:
-            shown[:, z] = np.minimum(shown[:, z], 255.0 / lattice.steps[z])
+            shown[:, z] = np.minimum(shown[:, z], lattice.max_sample / lattice.steps[z])
         residual = _residual(equations, form, shown @ steps)
         changed = descend(
             hierarchy.order,
@@ -79,6 +79,7 @@ def quantize(
             residual,
             steps,
             price,
+            lattice.max_sample,
             lowest,
             highest,
             levels,

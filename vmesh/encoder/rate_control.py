@@ -13,10 +13,10 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import UInt8Array
+from vmesh.arrays import SampleArray
 from vmesh.codec.writer import dumps, metadata_size
 from vmesh.encoder.drafts import Draft, Finisher
-from vmesh.kernels.scanline import SUBPIXEL, fill
+from vmesh.kernels.scanline import SUBPIXEL, draw
 from vmesh.mesh import Mesh
 
 # At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
@@ -40,9 +40,9 @@ _LEAST_GAIN: Final = 1.5
 _MOST_GAIN: Final = 8.0
 
 
-def price_of_quality(quality: int) -> float:
-    """Squared error that a bit has to save at a quality of 0 to 100."""
-    return float(_PRICE_AT_75 * _PRICE_FACTOR ** ((75 - quality) / 25))
+def price_of_quality(quality: int, peak: int) -> float:
+    """Squared error that a bit has to save at a quality of 0 to 100, for samples up to `peak`."""
+    return float(_PRICE_AT_75 * _PRICE_FACTOR ** ((75 - quality) / 25)) * (peak / 255) ** 2
 
 
 def guess_vertices(target_size: int) -> int:
@@ -135,13 +135,13 @@ def meet_psnr(
     return best
 
 
-def measure_psnr(image: UInt8Array, mesh: Mesh) -> float:
+def measure_psnr(image: SampleArray, mesh: Mesh) -> float:
     """PSNR of a mesh at native size over all samples, in decibels; colours as they are seen."""
     raster = np.zeros_like(image)
     vertices = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
-    fill(vertices, mesh.triangles, mesh.lattice.colors_from_levels(mesh.levels), raster)
+    draw(vertices, mesh.triangles, mesh.colors, raster)
     difference = raster.astype(np.float64) - image
     if image.shape[2] == 4:
-        difference[:, :, :3] *= image[:, :, 3:] / 255.0
+        difference[:, :, :3] *= image[:, :, 3:] / mesh.lattice.max_sample
     error = float(np.mean(difference * difference))
-    return 10.0 * log10(255.0**2 / error) if error > 0.0 else np.inf
+    return 10.0 * log10(mesh.lattice.max_sample**2 / error) if error > 0.0 else np.inf

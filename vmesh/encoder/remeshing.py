@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
+from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.drafts import UNIT, price_of
-from vmesh.encoder.image import visible_planes
+from vmesh.encoder.image import peak_of, visible_planes
 from vmesh.encoder.waves import Run, run_here, shares, waves
 from vmesh.kernels.delaunay import delaunay, sort_triangles
 from vmesh.kernels.half_edges import find_twins
@@ -74,7 +74,7 @@ class Remesher:
     Parameters
     ----------
     image : ndarray
-        Shape (h, w, c), uint8.
+        Shape (h, w, c), uint8 or uint16.
     vertices : ndarray
         Shape (n, 2), int32, in half pixels, in raster order, the corners of the picture among them.
     effort : Effort
@@ -84,7 +84,7 @@ class Remesher:
     """
 
     def __init__(
-        self, image: UInt8Array, vertices: Int32Array, effort: Effort, run: Run = run_here
+        self, image: SampleArray, vertices: Int32Array, effort: Effort, run: Run = run_here
     ) -> None:
         self._effort = effort
         self._run = run
@@ -100,6 +100,11 @@ class Remesher:
         self.n_vertices = len(vertices)
         self.error = 0.0
         self._refit()
+
+    @property
+    def peak(self) -> int:
+        """The largest sample that the picture may hold."""
+        return peak_of(self._picture)
 
     @property
     def n_samples(self) -> int:

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import UInt8Array, UInt16Array
+from vmesh.arrays import SampleArray, UInt16Array
 from vmesh.kernels.sobel import sobel4
 
 LEVEL: Final = 256
@@ -18,7 +18,7 @@ ONE: Final = 255 * LEVEL
 _MAX_RESPONSE: Final = 4 * 255
 
 
-def compute_salience(planes: UInt8Array, gamma: float = 1.0) -> UInt16Array:
+def compute_salience(planes: SampleArray, gamma: float = 1.0) -> UInt16Array:
     """Salience map of every colour plane.
 
     F = 255 (x / max)^gamma, where x is the improved Sobel response and max its maximum over the
@@ -28,7 +28,7 @@ def compute_salience(planes: UInt8Array, gamma: float = 1.0) -> UInt16Array:
     Parameters
     ----------
     planes : ndarray
-        Shape (c, h, w), uint8.
+        Shape (c, h, w), uint8; of uint16 the upper byte counts.
     gamma : float
         Contrast of the map, above 0; a smaller value gives more points.
 
@@ -44,6 +44,8 @@ def compute_salience(planes: UInt8Array, gamma: float = 1.0) -> UInt16Array:
     if not gamma > 0.0:
         raise ValueError(f"expected a gamma above 0, got {gamma}")
     salience = np.zeros(planes.shape, dtype=np.uint16)
+    if planes.dtype == np.uint16:
+        planes = (planes >> 8).astype(np.uint8)
     for plane, result in zip(planes, salience, strict=True):
         response = sobel4(np.pad(plane, 1, mode="edge"))
         largest = int(response.max())

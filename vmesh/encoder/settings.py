@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from operator import index
 from typing import Final, Literal, get_args
 
-from vmesh.color_lattice import MAX_STEP
+from vmesh.limits import MAX_DEPTH
 
 Method = Literal["adaptive", "blue-noise"]
 Sampler = Literal["multiclass", "channels"]
@@ -15,6 +15,7 @@ ColorMode = Literal["fitted", "sampled"]
 
 MAX_QUALITY: Final = 100
 MAX_EFFORT: Final = 9
+MAX_COLOR_STEP: Final = (1 << MAX_DEPTH) - 1
 DEFAULT_QUALITY: Final = 75
 DEFAULT_EFFORT: Final = 5
 
@@ -62,8 +63,8 @@ class Settings:
         Vertex colours by least squares over all pixels, or those of the vertices' pixels
         ("blue-noise").
     color_step : int, optional
-        Step of the luma lattice in sample units, 1 (no rounding) to 255; the other components'
-        steps follow from it. It follows from the error unless given.
+        Step of the luma lattice in sample units, 1 (no rounding) to the largest sample; the other
+        components' steps follow from it. It follows from the error unless given.
     seed : int
         Start of the random thresholds.
     threads : int, optional
@@ -124,8 +125,10 @@ class Settings:
             raise ValueError(f"expected a density above 0 and up to 1, got {self.density}")
         if not 1 <= self.effort <= MAX_EFFORT:
             raise ValueError(f"expected an effort of 1 to {MAX_EFFORT}, got {self.effort}")
-        if self.color_step is not None and not 1 <= self.color_step <= MAX_STEP:
-            raise ValueError(f"expected a color step of 1 to {MAX_STEP}, got {self.color_step}")
+        if self.color_step is not None and not 1 <= self.color_step <= MAX_COLOR_STEP:
+            raise ValueError(
+                f"expected a color step of 1 to {MAX_COLOR_STEP}, got {self.color_step}"
+            )
         if self.threads is not None and self.threads < 1:
             raise ValueError(f"expected 1 thread or more, got {self.threads}")
         if self.seed < 0:

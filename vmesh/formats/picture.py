@@ -10,9 +10,9 @@ from typing import BinaryIO, Final
 import numpy as np
 from PIL import Image, ImageOps
 
-from vmesh.arrays import UInt8Array
+from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.errors import ImageError
-from vmesh.formats.raster import fits_icc
+from vmesh.formats.raster import fits_icc, rescale
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Metadata
@@ -35,20 +35,20 @@ class Picture:
     Parameters
     ----------
     array : ndarray
-        uint8, shape (h, w), (h, w, 3) or (h, w, 4), upright.
+        uint8, shape (h, w), (h, w, 3) or (h, w, 4), upright; or uint16, shape (h, w).
     metadata : Metadata
         ICC profile, EXIF without its orientation, XMP.
     """
 
-    array: UInt8Array
+    array: SampleArray
     metadata: Metadata
 
 
 def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Picture:
     """The photograph in an open file.
 
-    Its EXIF orientation is applied, alpha and palettes are resolved, 16-bit samples are rounded
-    to 8, and of an animation the first frame is taken.
+    Its EXIF orientation is applied, alpha and palettes are resolved, and of an animation the first
+    frame is taken. Grey of 16 bits stays what it is; Pillow rounds colours of 16 bits to 8.
 
     Raises
     ------
@@ -103,11 +103,10 @@ def _upright(image: Image.Image) -> Image.Image:
         return image
 
 
-def _array_of(image: Image.Image) -> UInt8Array:
-    """Pixels of an image of any mode, uint8, shape (h, w), (h, w, 3) or (h, w, 4)."""
+def _array_of(image: Image.Image) -> SampleArray:
+    """Pixels of an image of any mode, shape (h, w), (h, w, 3) or (h, w, 4)."""
     if image.mode in _SIXTEEN_BIT:
-        wide = np.clip(np.asarray(image).astype(np.int64), 0, 65535)
-        return ((wide * 255 + 32767) // 65535).astype(np.uint8)
+        return np.clip(np.asarray(image).astype(np.int64), 0, 65535).astype(np.uint16)
     if image.mode in _WITH_ALPHA or "transparency" in image.info:
         return np.asarray(image.convert("RGBA"))
     if image.mode in ("1", "L"):
@@ -117,7 +116,7 @@ def _array_of(image: Image.Image) -> UInt8Array:
     raise ValueError(f"pixels of type {image.mode} are not supported")
 
 
-def _metadata_of(image: Image.Image, array: UInt8Array) -> Metadata:
+def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
     """What travels along; an ICC profile only if it fits the array's components."""
     profile = image.info.get("icc_profile") or b""
     xmp = image.info.get("xmp") or b""
@@ -133,11 +132,13 @@ def _metadata_of(image: Image.Image, array: UInt8Array) -> Metadata:
     )
 
 
-def flatten(array: UInt8Array) -> UInt8Array:
-    """A picture as RGB on white, shape (h, w, 3), uint8.
+def flatten(array: SampleArray, depth: int | None = None) -> UInt8Array:
+    """A picture as RGB of 8 bits on white, shape (h, w, 3), uint8.
 
-    `array` has shape (h, w), (h, w, 3) or (h, w, 4).
+    `array` has shape (h, w), (h, w, 3) or (h, w, 4), and samples of `depth` bits: as many as its
+    type holds, unless given.
     """
+    array = rescale(array, depth or 8 * array.dtype.itemsize, 8)
     if array.ndim == 2:
         return np.repeat(array[:, :, None], 3, axis=2)
     if array.shape[2] == 3:

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 
 from vmesh.arrays import Int32Array, Int64Array, SampleArray, UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill, fill_deep, measure
+from vmesh.kernels.scanline import SUBPIXEL, draw, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Matrix, Mesh, Metadata, Placement
@@ -106,10 +106,7 @@ def _drawn(
 ) -> SampleArray:
     """Triangles drawn on a raster of their own, shape (h, w, c)."""
     raster = np.zeros((size[1], size[0], colors.shape[1]), dtype=colors.dtype)
-    if colors.dtype == np.uint8:
-        fill(positions, triangles, colors, raster)
-    else:
-        fill_deep(positions, triangles, colors, raster)
+    draw(positions, triangles, colors, raster)
     return raster
 
 
@@ -221,6 +218,8 @@ def scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
 
 def rescale(samples: SampleArray, depth: int, n_bits: int) -> SampleArray:
     """Samples of a number of bits in another number of bits, 8 or 16, rounded."""
+    if depth == n_bits:
+        return samples
     largest, wanted = (1 << depth) - 1, (1 << n_bits) - 1
     wide = (2 * wanted * samples.astype(np.int64) + largest) // (2 * largest)
     return wide.astype(np.uint8 if n_bits == 8 else np.uint16)

@@ -58,7 +58,7 @@ SPLIT_CONTEXTS = N_AREA_CLASSES * N_SMALL * N_SMALL + N_LARGE * N_LARGE
 SPREADS = (11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016)
 N_SPREADS = 14
 N_UNARY = 14
-MAX_LENGTH = 16  # of the bits of a size beyond that: differences of 16-bit chroma have 17
+MAX_SIZE_LENGTH = 16  # of the bits of a size beyond that: differences of 16-bit chroma have 17
 LARGEST_DEVIATION = 511
 SIZE_CONTEXTS = N_UNARY + 2
 COMPONENT_CONTEXTS = N_SPREADS * SIZE_CONTEXTS + 3
@@ -463,7 +463,7 @@ def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, predictio
 def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
     """Code the size of a difference: in unary up to N_UNARY, what is more in bits of its length.
 
-    Uses SIZE_CONTEXTS contexts from c. Returns -1 if what is more has over MAX_LENGTH bits.
+    Uses SIZE_CONTEXTS contexts from c. Returns -1 if what is more is longer than MAX_SIZE_LENGTH.
     """
     coded = 0
     while coded < N_UNARY:
@@ -474,7 +474,7 @@ def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, siz
     length = 0
     while code_bit(coder, data, odds, c + N_UNARY, 1 if rest >> (length + 1) > 0 else 0) == 1:
         length += 1
-        if length > MAX_LENGTH:
+        if length > MAX_SIZE_LENGTH:
             return -1
     value = 1
     for i in range(length):

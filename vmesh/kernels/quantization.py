@@ -99,6 +99,7 @@ def descend(
     residual: Float64Array,
     steps: Float64Array,
     price: float,
+    peak: int,
     lowest: Int32Array,
     highest: Int32Array,
     levels: Int64Array,
@@ -125,6 +126,8 @@ def descend(
         Shape (c, c), float64: change of the samples with each component's level.
     price : float
         Squared error that a bit is worth.
+    peak : int
+        The largest sample.
     lowest, highest : ndarray
         Shape (c,), int32: bounds of the levels.
     levels : ndarray
@@ -143,7 +146,7 @@ def descend(
                         curvature += steps[z, q] * steps[z, q] * products[k, q]
             level = levels[v, z]
             # Luma, grey and alpha are cut off at the largest sample.
-            top = 255.0 / steps[z, z] if z in (0, 3) else np.inf
+            top = peak / steps[z, z] if z in (0, 3) else np.inf
             own = level - means[place, z]
             own_bits = bits(table, z, spreads[place, z], own)
             best, least = 0, 0.0

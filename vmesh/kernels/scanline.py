@@ -24,7 +24,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array, UInt16Array
+from vmesh.arrays import (
+    Float64Array,
+    Int32Array,
+    Int64Array,
+    SampleArray,
+    UInt8Array,
+    UInt16Array,
+)
 from vmesh.kernels.jit import kernel
 
 SUBPIXEL = 256
@@ -303,6 +310,13 @@ def fill_deep(
                     whole = upper // det
                     rest = ((upper - whole * det) << 8) + lower
                     raster[y, x, z] = np.uint16((whole << 8) + (2 * rest + det) // (2 * det))
+
+
+def draw(
+    vertices: Int64Array, triangles: Int32Array, colors: SampleArray, raster: SampleArray
+) -> None:
+    """Draw triangles in samples of either kind; as :func:`fill` and :func:`fill_deep`."""
+    (fill if raster.dtype == np.uint8 else fill_deep)(vertices, triangles, colors, raster)
 
 
 @kernel
