@@ -11,7 +11,7 @@ const SPREADS = [11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346
 const N_SPREADS = SPREADS.length + 2;
 const SPREAD_WITHOUT_PARENTS = N_SPREADS - 1;
 const MOST_UNARY = 14;
-const LONGEST_REST = 10;
+const LONGEST_REST = 16;
 const MORE_THAN = [
   [
     [20, 25, 23, 26, 27, 27, 28, 29, 30, 31, 31, 31, 31, 31],
@@ -97,14 +97,14 @@ function placeVertex(hierarchy, place, v, parents) {
  * @param {Uint8Array} steps one for each component
  * @param {number} farX
  * @param {number} farY
- * @returns {Int16Array} the levels of each vertex in turn
+ * @returns {Int32Array} the levels of each vertex in turn
  */
-export function readLevels(decoder, triangulation, steps, farX, farY) {
+export function readLevels(decoder, triangulation, steps, depth, farX, farY) {
   decoder.part = "colors";
   const { order, nParents, parents } = hierarchyOf(triangulation, farX, farY);
   const nComponents = steps.length;
-  const levels = new Int16Array(order.length * nComponents);
-  const readers = Array.from(steps, (step, component) => new LevelReader(decoder, component, step));
+  const levels = new Int32Array(order.length * nComponents);
+  const readers = Array.from(steps, (step, component) => new LevelReader(decoder, component, Math.ceil((2 ** depth - 1) / step)));
   const weights = new Float64Array(MOST_PARENTS);
   const known = new Float64Array(MOST_PARENTS);
 
@@ -115,7 +115,7 @@ export function readLevels(decoder, triangulation, steps, farX, farY) {
       for (let i = 0; i < n; i++) {
         const parent = parents[MOST_PARENTS * place + i] * nComponents;
         const difference = component === 0 ? 0 : Math.abs(levels[parent] - levels[own]);
-        weights[i] = Math.floor(FULL_WEIGHT / (1 + 2 * difference));
+        weights[i] = Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * difference)), 1);
         known[i] = levels[parent + component];
       }
       levels[own + component] = readers[component].read(predict(weights, known, n));
@@ -129,24 +129,31 @@ function predict(weights, known, n) {
   if (n === 0) return { prediction: 0, spread: SPREAD_WITHOUT_PARENTS, lean: 0 };
   let w = 0;
   let t = 0;
-  let s = 0;
   for (let i = 0; i < n; i++) {
     w += weights[i];
     t += weights[i] * known[i];
-    s += weights[i] * known[i] * known[i];
   }
   const prediction = Math.floor((2 * t + w) / (2 * w));
   const rest = 20 * (t - prediction * w);
   const lean = rest > 3 * w ? 1 : rest < -3 * w ? 2 : 0;
-  return { prediction, spread: spreadOf(w, t, s), lean };
+  return { prediction, spread: spreadOf(weights, known, n, w, prediction), lean };
 }
 
 /**
- * How many thresholds the variance reaches. No quotient is needed, and both sides are exact: S * W
- * and T * T are below 2**48, 1024 is a power of two, and the right side is below 2**50.
+ * How many thresholds the variance reaches. No quotient is needed: floor(a / b) reaches an integer
+ * if a reaches b times it. Both sides are exact: W is at most 9 * 4096 and a deviation at most 511,
+ * so S * W and D * D are at most (9 * 4096 * 511)**2 < 2**49, as is their difference; 1024 is a
+ * power of two, and the largest threshold times W * W is below 2**49.
  */
-function spreadOf(w, t, s) {
-  const numerator = 1024 * (s * w - t * t);
+function spreadOf(weights, known, n, w, prediction) {
+  let d = 0;
+  let s = 0;
+  for (let i = 0; i < n; i++) {
+    const deviation = Math.min(Math.max(known[i] - prediction, -511), 511);
+    d += weights[i] * deviation;
+    s += weights[i] * deviation * deviation;
+  }
+  const numerator = 1024 * (s * w - d * d);
   let spread = 0;
   while (spread < SPREADS.length && numerator >= SPREADS[spread] * (w * w)) spread++;
   return spread;
@@ -154,9 +161,9 @@ function spreadOf(w, t, s) {
 
 /** Reads the levels of one component. */
 class LevelReader {
-  constructor(decoder, component, step) {
+  constructor(decoder, component, highest) {
     this.decoder = decoder;
-    this.highest = Math.ceil(255 / step);
+    this.highest = highest;
     this.lowest = component === 1 || component === 2 ? -this.highest : 0;
     this.sizes = sizeContexts(component);
     this.lengths = Contexts.even(N_SPREADS);
@@ -197,23 +204,22 @@ function sizeContexts(component) {
 }
 
 /**
- * @param {Int16Array} levels
- * @param {Uint8Array} steps
- * @returns {Uint8ClampedArray} the samples of each vertex in turn (section 7.5)
+ * @param {Int32Array} levels
+ * @param {number[]} steps
+ * @param {number} depth
+ * @returns {Uint8ClampedArray | Uint16Array} the samples of each vertex in turn (section 7.5)
  */
-export function samplesOf(levels, steps) {
+export function samplesOf(levels, steps, depth) {
   const n = steps.length;
-  const samples = new Uint8ClampedArray(levels.length);
-  for (let at = 0; at < levels.length; at++) samples[at] = levels[at] * steps[at % n];
-  if (n < 3) return samples;
-  for (let at = 0; at < levels.length; at += n) {
-    const orange = levels[at + 1] * steps[1];
-    const green = levels[at + 2] * steps[2];
-    const middle = levels[at] * steps[0] - (green >> 1);
+  const values = levels.map((level, at) => level * steps[at % n]);
+  for (let at = 0; n >= 3 && at < levels.length; at += n) {
+    const [luma, orange, green] = values.subarray(at, at + 3);
+    const middle = luma - (green >> 1);
     const blue = middle - (orange >> 1);
-    samples[at] = blue + orange;
-    samples[at + 1] = green + middle;
-    samples[at + 2] = blue;
+    values[at] = blue + orange;
+    values[at + 1] = green + middle;
+    values[at + 2] = blue;
   }
-  return samples;
+  const clipped = values.map((value) => Math.min(Math.max(value, 0), 2 ** depth - 1));
+  return depth === 8 ? Uint8Array.from(clipped) : Uint16Array.from(clipped);
 }

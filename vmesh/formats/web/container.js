@@ -4,7 +4,7 @@ import { VmeshError, check } from "./errors.js";
 import { inflate } from "./inflate.js";
 
 const SIGNATURE = [0x8b, 0x56, 0x4d, 0x0d, 0x0a];
-const VERSION = 0x01;
+const MAJOR_VERSION = 1;
 const METADATA_NAMES = { i: "icc", e: "exif", x: "xmp" };
 const LEVELS_PER_BYTE = 5700;
 
@@ -77,7 +77,8 @@ function readSignature(reader) {
  * @property {number} subdivision a pixel is 2**subdivision lattice units wide
  * @property {number} connectivity 0 implied, 1 listed, 2 flipped triangles
  * @property {number} nVertices
- * @property {Uint8Array} steps one for each colour component
+ * @property {number[]} steps one for each colour component
+ * @property {number} depth bits of a sample, 8 to 16
  * @property {number} farX x of the right border of the canvas, in lattice units
  * @property {number} farY y of the lower border
  */
@@ -85,25 +86,29 @@ function readSignature(reader) {
 /** @returns {Header} */
 function readHeader(reader) {
   readSignature(reader);
-  check(reader.byte() === VERSION, "version");
+  check(reader.byte() >> 4 === MAJOR_VERSION, "version");
   const format = reader.byte();
+  const isDeep = (format & 3) === 1;
+  const components = isDeep ? reader.byte() : format & 3;
   const width = reader.varint("header");
   const height = reader.varint("header");
   const nVertices = reader.varint("header");
-  const nComponents = (format & 3) + 1;
-  const steps = reader.take(nComponents).slice();
+  const nComponents = (components & 3) + 1;
+  const steps = Array.from({ length: nComponents }, () => reader.varint("header"));
   reader.checksum(0);
 
   const subdivision = (format >> 2) & 15;
   const connectivity = format >> 6;
+  const depth = 8 + (components >> 2);
   const farX = width * 2 ** subdivision;
   const farY = height * 2 ** subdivision;
   check(1 <= width && width <= 65535 && 1 <= height && height <= 65535, "header");
   check(subdivision <= 8 && Math.max(farX, farY) <= 2 ** 19, "header");
   check(nComponents !== 2 && connectivity !== 3, "header");
   check(4 <= nVertices && nVertices <= (farX + 1) * (farY + 1), "header");
-  check(!steps.includes(0), "header");
-  return { width, height, subdivision, connectivity, nVertices, steps, farX, farY };
+  check(!isDeep || (9 <= depth && depth <= 16), "header");
+  check(steps.every((step) => 1 <= step && step < 2 ** depth), "header");
+  return { width, height, subdivision, connectivity, nVertices, steps, depth, farX, farY };
 }
 
 /** All chunks; the last one is `M`, with which the file must end. */

@@ -17,11 +17,12 @@ function* rowsOf(array, length) {
   for (let at = 0; at < array.length; at += length) yield array.subarray(at, at + length);
 }
 
-function meshText({ width, height, subdivision, steps, vertices, levels, triangles }) {
+function meshText({ width, height, subdivision, depth, steps, vertices, levels, triangles }) {
   const lines = [
-    "vmesh 0.1",
+    "vmesh 1.0",
     `canvas ${width} ${height}`,
     `subdivision ${subdivision}`,
+    `depth ${depth}`,
     `steps ${steps.join(" ")}`,
     `vertices ${vertices.length / 2}`,
   ];
@@ -34,17 +35,25 @@ function meshText({ width, height, subdivision, steps, vertices, levels, triangl
   return `${lines.join("\n")}\n`;
 }
 
-function pamFile({ width, height, depth, data }) {
+function pamFile({ width, height, components, depth, data }) {
   const header = [
     "P7",
     `WIDTH ${width}`,
     `HEIGHT ${height}`,
-    `DEPTH ${depth}`,
-    "MAXVAL 255",
-    `TUPLTYPE ${TUPLE_TYPES[depth]}`,
+    `DEPTH ${components}`,
+    `MAXVAL ${2 ** depth - 1}`,
+    `TUPLTYPE ${TUPLE_TYPES[components]}`,
     "ENDHDR",
   ];
-  return Buffer.concat([Buffer.from(`${header.join("\n")}\n`), data]);
+  return Buffer.concat([Buffer.from(`${header.join("\n")}\n`), bytesOf(data, depth)]);
+}
+
+/** The samples in bytes, the upper one first. */
+function bytesOf(data, depth) {
+  if (depth === 8) return data;
+  const bytes = new Uint8Array(2 * data.length);
+  data.forEach((sample, i) => bytes.set([sample >> 8, sample & 255], 2 * i));
+  return bytes;
 }
 
 function main([input, output]) {

@@ -1,5 +1,5 @@
 /**
- * Decoder and renderer of `.vmesh` files, draft 1 (spec/vmesh.md). Written from the specification
+ * Decoder and renderer of `.vmesh` files, version 1.0 (spec/vmesh.md). Written from the specification
  * alone, without dependencies, for browsers and Node.
  */
 
@@ -25,10 +25,11 @@ const FLIPPED = 2;
  * @property {number} width canvas in pixels
  * @property {number} height
  * @property {number} subdivision a pixel is 2**subdivision lattice units wide
- * @property {Uint8Array} steps c of them; a level times its step is a value
+ * @property {number} depth bits of a sample, 8 to 16
+ * @property {number[]} steps c of them; a level times its step is a value
  * @property {Int32Array} vertices 2 n: x, y in lattice units, in raster order
- * @property {Int16Array} levels c n: as stored
- * @property {Uint8ClampedArray} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
+ * @property {Int32Array} levels c n: as stored
+ * @property {Uint8Array | Uint16Array} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
  * @property {Int32Array} triangles 3 m: vertex numbers, in canonical order
  * @property {{icc?: Uint8Array, exif?: Uint8Array, xmp?: Uint8Array}} metadata inflated
  * @property {{tag: string, content: Uint8Array}[]} otherChunks of unknown ancillary tags
@@ -47,18 +48,18 @@ export function decode(bytes, limits = {}) {
     ...DEFAULT_LIMITS,
     ...limits,
   });
-  const { width, height, subdivision, steps } = header;
+  const { width, height, subdivision, depth, steps } = header;
   const mesh = readMesh(header, new RangeDecoder(content));
-  return { width, height, subdivision, steps, ...mesh, metadata, otherChunks };
+  return { width, height, subdivision, depth, steps, ...mesh, metadata, otherChunks };
 }
 
 /** Decodes the content of the chunk `M`. */
-function readMesh({ connectivity, nVertices, steps, farX, farY }, decoder) {
+function readMesh({ connectivity, nVertices, steps, depth, farX, farY }, decoder) {
   const vertices = readPositions(decoder, nVertices, farX + 1, farY + 1);
   checkCorners(vertices, farX, farY);
   const triangulation = new Triangulation(vertices);
   let triangles = triangulation.triangles();
-  const levels = readLevels(decoder, triangulation, steps, farX, farY);
+  const levels = readLevels(decoder, triangulation, steps, depth, farX, farY);
   if (connectivity === LISTED) {
     triangles = readTriangles(decoder, vertices, farX, farY);
     checkGeometry(vertices, triangles, farX, farY);
@@ -68,7 +69,7 @@ function readMesh({ connectivity, nVertices, steps, farX, farY }, decoder) {
     triangles = readFlips(decoder, vertices, triangles, luma);
   }
   decoder.end();
-  return { vertices, levels, samples: samplesOf(levels, steps), triangles };
+  return { vertices, levels, samples: samplesOf(levels, steps, depth), triangles };
 }
 
 function checkCorners(vertices, farX, farY) {
