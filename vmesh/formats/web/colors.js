@@ -1,15 +1,13 @@
 /** The colours of the vertices: section 7 of the specification. */
 
 import { check } from "./errors.js";
+import { MOST_PARENTS, NO_PARENT, hierarchyOf } from "./hierarchy.js";
 import { Contexts } from "./rangecoder.js";
 
-const MOST_TRIANGLES = 8;
-/** A vertex on the border of the canvas has one neighbour more than triangles. */
-const MOST_PARENTS = MOST_TRIANGLES + 1;
 const FULL_WEIGHT = 4096;
+const MOST_DEVIATION = 511;
 const SPREADS = [11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016];
 const N_SPREADS = SPREADS.length + 2;
-const SPREAD_WITHOUT_PARENTS = N_SPREADS - 1;
 const MOST_UNARY = 14;
 const LONGEST_REST = 16;
 const MORE_THAN = [
@@ -26,107 +24,42 @@ const MORE_THAN = [
 ];
 
 /**
- * The vertices in the order in which their colours are coded, and the parents of each.
- * @typedef {object} Hierarchy
- * @property {Int32Array} order vertex numbers
- * @property {Uint8Array} nParents of each place in the order
- * @property {Int32Array} parents a row of MOST_PARENTS for each place in the order
- */
-
-/**
- * Thins the triangulation layer by layer (section 7.2). A layer's vertices are no neighbours, so
- * to remove one after the other gives the Delaunay triangulation of the others.
- *
- * @param {import("./delaunay.js").Triangulation} triangulation is used up: four corners are left
- * @param {number} farX
- * @param {number} farY
- * @returns {Hierarchy}
- */
-function hierarchyOf(triangulation, farX, farY) {
-  const { points } = triangulation;
-  const n = points.length / 2;
-  const hierarchy = {
-    order: new Int32Array(n),
-    nParents: new Uint8Array(n),
-    parents: new Int32Array(MOST_PARENTS * n),
-  };
-  const isTaken = new Uint8Array(n);
-  let left = Int32Array.from({ length: n }, (_, v) => v);
-  while (left.length > 4) {
-    const layer = left.filter((v) => {
-      const isX = points[2 * v] === 0 || points[2 * v] === farX;
-      const isY = points[2 * v + 1] === 0 || points[2 * v + 1] === farY;
-      const isCorner = isX && isY;
-      isTaken[v] = !isCorner && mayBeTaken(triangulation, v, isTaken);
-      return isTaken[v];
-    });
-    // The layer that is taken first comes last.
-    let place = left.length - layer.length;
-    for (const v of layer) placeVertex(hierarchy, place++, v, neighboursOf(triangulation, v));
-    for (const v of layer) triangulation.remove(v);
-    left = left.filter((v) => !isTaken[v]);
-  }
-  left.forEach((v, i) => placeVertex(hierarchy, i, v, left.subarray(Math.max(i - 1, 0), i)));
-  return hierarchy;
-}
-
-/** Whether a vertex has few enough triangles, and no neighbour of it has been taken. */
-function mayBeTaken(triangulation, v, isTaken) {
-  let nTriangles = 0;
-  for (const e of triangulation.edgesAround(v)) {
-    if (isTaken[triangulation.destOf(e)]) return false;
-    if (triangulation.hasTriangle(e)) nTriangles++;
-    if (nTriangles > MOST_TRIANGLES) return false;
-  }
-  return true;
-}
-
-function neighboursOf(triangulation, v) {
-  return triangulation.edgesAround(v).map((e) => triangulation.destOf(e));
-}
-
-function placeVertex(hierarchy, place, v, parents) {
-  hierarchy.order[place] = v;
-  hierarchy.nParents[place] = parents.length;
-  hierarchy.parents.set(parents, MOST_PARENTS * place);
-}
-
-/**
  * @param {import("./rangecoder.js").RangeDecoder} decoder
  * @param {import("./delaunay.js").Triangulation} triangulation the implied one; it is used up
- * @param {Uint8Array} steps one for each component
- * @param {number} farX
- * @param {number} farY
+ * @param {Uint8Array} sides of the canvas that each vertex is on
+ * @param {{steps: number[], depth: number}} header
  * @returns {Int32Array} the levels of each vertex in turn
  */
-export function readLevels(decoder, triangulation, steps, depth, farX, farY) {
+export function readLevels(decoder, triangulation, sides, { steps, depth }) {
   decoder.part = "colors";
-  const { order, nParents, parents } = hierarchyOf(triangulation, farX, farY);
+  const { order, parents } = hierarchyOf(triangulation, sides);
   const nComponents = steps.length;
   const levels = new Int32Array(order.length * nComponents);
-  const readers = Array.from(steps, (step, component) => new LevelReader(decoder, component, Math.ceil((2 ** depth - 1) / step)));
+  const readers = steps.map((step, component) => {
+    return new LevelReader(decoder, component, Math.ceil((2 ** depth - 1) / step));
+  });
   const weights = new Float64Array(MOST_PARENTS);
   const known = new Float64Array(MOST_PARENTS);
 
-  order.forEach((v, place) => {
+  for (const v of order) {
     const own = v * nComponents;
-    const n = nParents[place];
     for (let component = 0; component < nComponents; component++) {
-      for (let i = 0; i < n; i++) {
-        const parent = parents[MOST_PARENTS * place + i] * nComponents;
+      let n = 0;
+      for (; n < MOST_PARENTS && parents[MOST_PARENTS * v + n] !== NO_PARENT; n++) {
+        const parent = parents[MOST_PARENTS * v + n] * nComponents;
         const difference = component === 0 ? 0 : Math.abs(levels[parent] - levels[own]);
-        weights[i] = Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * difference)), 1);
-        known[i] = levels[parent + component];
+        weights[n] = Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * difference)), 1);
+        known[n] = levels[parent + component];
       }
       levels[own + component] = readers[component].read(predict(weights, known, n));
     }
-  });
+  }
   return levels;
 }
 
 /** Prediction, spread and lean from the levels of n parents and their weights. */
 function predict(weights, known, n) {
-  if (n === 0) return { prediction: 0, spread: SPREAD_WITHOUT_PARENTS, lean: 0 };
+  if (n === 0) return { prediction: 0, spread: N_SPREADS - 1, lean: 0 };
   let w = 0;
   let t = 0;
   for (let i = 0; i < n; i++) {
@@ -140,16 +73,16 @@ function predict(weights, known, n) {
 }
 
 /**
- * How many thresholds the variance reaches. No quotient is needed: floor(a / b) reaches an integer
- * if a reaches b times it. Both sides are exact: W is at most 9 * 4096 and a deviation at most 511,
+ * How many thresholds the variance reaches. No quotient is needed: the floor of a / b reaches an
+ * integer if a reaches b times it. All is exact: W is at most 9 * 4096 and a deviation at most 511,
  * so S * W and D * D are at most (9 * 4096 * 511)**2 < 2**49, as is their difference; 1024 is a
- * power of two, and the largest threshold times W * W is below 2**49.
+ * power of two; and the largest threshold times W * W is below 2**49.
  */
 function spreadOf(weights, known, n, w, prediction) {
   let d = 0;
   let s = 0;
   for (let i = 0; i < n; i++) {
-    const deviation = Math.min(Math.max(known[i] - prediction, -511), 511);
+    const deviation = clamp(known[i] - prediction, -MOST_DEVIATION, MOST_DEVIATION);
     d += weights[i] * deviation;
     s += weights[i] * deviation * deviation;
   }
@@ -159,13 +92,17 @@ function spreadOf(weights, known, n, w, prediction) {
   return spread;
 }
 
+function clamp(value, least, most) {
+  return Math.min(Math.max(value, least), most);
+}
+
 /** Reads the levels of one component. */
 class LevelReader {
   constructor(decoder, component, highest) {
     this.decoder = decoder;
     this.highest = highest;
-    this.lowest = component === 1 || component === 2 ? -this.highest : 0;
-    this.sizes = sizeContexts(component);
+    this.lowest = component === 1 || component === 2 ? -highest : 0;
+    this.sizes = sizeContexts(MORE_THAN[Math.min(component, 1)]);
     this.lengths = Contexts.even(N_SPREADS);
     this.bits = Contexts.even(N_SPREADS);
     this.signs = Contexts.even(3);
@@ -194,32 +131,31 @@ class LevelReader {
   }
 }
 
-function sizeContexts(component) {
-  const rows = MORE_THAN[Math.min(component, 1)];
-  const odds = [];
-  for (let spread = 0; spread < N_SPREADS; spread++) {
-    for (let size = 0; size < MOST_UNARY; size++) odds.push(2048 * rows[Math.min(size, 2)][spread]);
-  }
-  return Contexts.preset(odds);
+/** Contexts of the bits in unary: for each spread MOST_UNARY of them. */
+function sizeContexts([first, second, others]) {
+  const odds = first.map((_, spread) => {
+    const row = new Array(MOST_UNARY).fill(2048 * others[spread]);
+    row.splice(0, 2, 2048 * first[spread], 2048 * second[spread]);
+    return row;
+  });
+  return Contexts.preset(odds.flat());
 }
 
 /**
- * @param {Int32Array} levels
- * @param {number[]} steps
- * @param {number} depth
- * @returns {Uint8ClampedArray | Uint16Array} the samples of each vertex in turn (section 7.5)
+ * @param {Int32Array} levels of each vertex in turn
+ * @param {{steps: number[], depth: number}} header
+ * @returns {Uint8Array | Uint16Array} the samples of each vertex in turn (section 7.5)
  */
-export function samplesOf(levels, steps, depth) {
+export function samplesOf(levels, { steps, depth }) {
   const n = steps.length;
   const values = levels.map((level, at) => level * steps[at % n]);
   for (let at = 0; n >= 3 && at < levels.length; at += n) {
-    const [luma, orange, green] = values.subarray(at, at + 3);
-    const middle = luma - (green >> 1);
-    const blue = middle - (orange >> 1);
-    values[at] = blue + orange;
-    values[at + 1] = green + middle;
+    const middle = values[at] - (values[at + 2] >> 1);
+    const blue = middle - (values[at + 1] >> 1);
+    values[at] = blue + values[at + 1];
+    values[at + 1] = values[at + 2] + middle;
     values[at + 2] = blue;
   }
-  const clipped = values.map((value) => Math.min(Math.max(value, 0), 2 ** depth - 1));
-  return depth === 8 ? Uint8Array.from(clipped) : Uint16Array.from(clipped);
+  const samples = depth === 8 ? new Uint8Array(values.length) : new Uint16Array(values.length);
+  return samples.map((_, at) => clamp(values[at], 0, 2 ** depth - 1));
 }

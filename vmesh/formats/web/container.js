@@ -1,11 +1,11 @@
-/** Signature, header and chunks of a file: sections 3, 4 and 9 of the specification. */
+/** Signature, header and chunks of a file: sections 3 and 4 of the specification. */
 
 import { VmeshError, check } from "./errors.js";
-import { inflate } from "./inflate.js";
 
 const SIGNATURE = [0x8b, 0x56, 0x4d, 0x0d, 0x0a];
 const MAJOR_VERSION = 1;
-const METADATA_NAMES = { i: "icc", e: "exif", x: "xmp" };
+/** Chunks of these tags occur once at most. */
+export const METADATA_TAGS = "iex";
 const LEVELS_PER_BYTE = 5700;
 
 const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
@@ -66,10 +66,6 @@ class Reader {
   }
 }
 
-function readSignature(reader) {
-  for (const expected of SIGNATURE) check(reader.byte() === expected, "signature");
-}
-
 /**
  * @typedef {object} Header
  * @property {number} width canvas in pixels
@@ -85,7 +81,7 @@ function readSignature(reader) {
 
 /** @returns {Header} */
 function readHeader(reader) {
-  readSignature(reader);
+  for (const expected of SIGNATURE) check(reader.byte() === expected, "signature");
   check(reader.byte() >> 4 === MAJOR_VERSION, "version");
   const format = reader.byte();
   const isDeep = (format & 3) === 1;
@@ -114,7 +110,6 @@ function readHeader(reader) {
 /** All chunks; the last one is `M`, with which the file must end. */
 function readChunks(reader) {
   const chunks = [];
-  const seen = new Set();
   let tag;
   do {
     const start = reader.position;
@@ -123,8 +118,7 @@ function readChunks(reader) {
     const content = reader.take(reader.varint("chunk"));
     reader.checksum(start);
     check(tag === "M" || /[a-z]/.test(tag), "chunk");
-    check(!(tag in METADATA_NAMES && seen.has(tag)), "chunk");
-    seen.add(tag);
+    check(!METADATA_TAGS.includes(tag) || chunks.every((chunk) => chunk.tag !== tag), "chunk");
     chunks.push({ tag, content });
   } while (tag !== "M");
   check(reader.atEnd(), "trailing");
@@ -133,9 +127,9 @@ function readChunks(reader) {
 
 /**
  * @param {Uint8Array} bytes a file
- * @param {{pixels: number, vertices: number, verticesPerByte: number, metadataBytes: number}} limits
- * @returns {{header: Header, content: Uint8Array, metadata: object, otherChunks: object[]}}
- *   `content` is that of the chunk `M`; it and `otherChunks` share memory with `bytes`
+ * @param {{pixels: number, vertices: number, verticesPerByte: number}} limits
+ * @returns {{header: Header, content: Uint8Array, chunks: {tag: string, content: Uint8Array}[]}}
+ *   `content` is that of the chunk `M`; it and the others share memory with `bytes`
  */
 export function readFile(bytes, limits) {
   const reader = new Reader(bytes);
@@ -148,13 +142,5 @@ export function readFile(bytes, limits) {
   const nLevels = header.nVertices * header.steps.length;
   check(nLevels <= LEVELS_PER_BYTE * (content.length + 1), "header");
   check(header.nVertices <= 65536 + limits.verticesPerByte * content.length, "limit");
-
-  const metadata = {};
-  const otherChunks = [];
-  for (const chunk of chunks) {
-    const name = METADATA_NAMES[chunk.tag];
-    if (name) metadata[name] = inflate(chunk.content, limits.metadataBytes);
-    else otherChunks.push(chunk);
-  }
-  return { header, content, metadata, otherChunks };
+  return { header, content, chunks };
 }

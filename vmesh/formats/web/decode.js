@@ -9,8 +9,13 @@
  */
 
 import { readFileSync, writeFileSync } from "node:fs";
-import { VmeshError, decode, render } from "./vmesh.js";
+import { inflateSync } from "node:zlib";
+import { METADATA_TAGS, readFile } from "./container.js";
+import { check } from "./errors.js";
+import { DEFAULT_LIMITS, VmeshError, decode, render } from "./vmesh.js";
 
+/** Bytes to which a metadata chunk may inflate. */
+const MOST_METADATA = 2 ** 24;
 const TUPLE_TYPES = { 1: "GRAYSCALE", 3: "RGB", 4: "RGB_ALPHA" };
 
 function* rowsOf(array, length) {
@@ -48,6 +53,23 @@ function pamFile({ width, height, components, depth, data }) {
   return Buffer.concat([Buffer.from(`${header.join("\n")}\n`), bytesOf(data, depth)]);
 }
 
+/** Pictures need no metadata, so that `decode` leaves them alone; a whole file is checked here. */
+function checkMetadata(bytes) {
+  for (const { tag, content } of readFile(bytes, DEFAULT_LIMITS).chunks) {
+    if (METADATA_TAGS.includes(tag)) checkStream(content);
+  }
+}
+
+/** Checks that a content is one complete zlib stream of one byte or more. */
+function checkStream(content) {
+  try {
+    const { buffer, engine } = inflateSync(content, { info: true, maxOutputLength: MOST_METADATA });
+    check(buffer.length > 0 && engine.bytesWritten === content.length, "metadata");
+  } catch (error) {
+    throw new VmeshError(error.code === "ERR_BUFFER_TOO_LARGE" ? "limit" : "metadata");
+  }
+}
+
 /** The samples in bytes, the upper one first. */
 function bytesOf(data, depth) {
   if (depth === 8) return data;
@@ -62,7 +84,9 @@ function main([input, output]) {
     return 2;
   }
   try {
-    const mesh = decode(readFileSync(input));
+    const bytes = readFileSync(input);
+    checkMetadata(bytes);
+    const mesh = decode(bytes);
     const picture = render(mesh);
     writeFileSync(`${output}.mesh`, meshText(mesh));
     writeFileSync(`${output}.pam`, pamFile(picture));
