@@ -1,17 +1,15 @@
 /** The colours of the vertices: section 7 of the specification. */
 
 import { check } from "./errors.js";
+import { MOST_PARENTS, NO_PARENT, hierarchyOf } from "./hierarchy.js";
 import { Contexts } from "./rangecoder.js";
 
-const MOST_TRIANGLES = 8;
-/** A vertex on the border of the canvas has one neighbour more than triangles. */
-const MOST_PARENTS = MOST_TRIANGLES + 1;
 const FULL_WEIGHT = 4096;
+const MOST_DEVIATION = 511;
 const SPREADS = [11, 64, 214, 576, 1388, 3136, 6808, 14400, 29936, 61504, 125346, 254016];
 const N_SPREADS = SPREADS.length + 2;
-const SPREAD_WITHOUT_PARENTS = N_SPREADS - 1;
 const MOST_UNARY = 14;
-const LONGEST_REST = 10;
+const LONGEST_REST = 16;
 const MORE_THAN = [
   [
     [20, 25, 23, 26, 27, 27, 28, 29, 30, 31, 31, 31, 31, 31],
@@ -26,139 +24,85 @@ const MORE_THAN = [
 ];
 
 /**
- * The vertices in the order in which their colours are coded, and the parents of each.
- * @typedef {object} Hierarchy
- * @property {Int32Array} order vertex numbers
- * @property {Uint8Array} nParents of each place in the order
- * @property {Int32Array} parents a row of MOST_PARENTS for each place in the order
- */
-
-/**
- * Thins the triangulation layer by layer (section 7.2). A layer's vertices are no neighbours, so
- * to remove one after the other gives the Delaunay triangulation of the others.
- *
- * @param {import("./delaunay.js").Triangulation} triangulation is used up: four corners are left
- * @param {number} farX
- * @param {number} farY
- * @returns {Hierarchy}
- */
-function hierarchyOf(triangulation, farX, farY) {
-  const { points } = triangulation;
-  const n = points.length / 2;
-  const hierarchy = {
-    order: new Int32Array(n),
-    nParents: new Uint8Array(n),
-    parents: new Int32Array(MOST_PARENTS * n),
-  };
-  const isTaken = new Uint8Array(n);
-  let left = Int32Array.from({ length: n }, (_, v) => v);
-  while (left.length > 4) {
-    const layer = left.filter((v) => {
-      const isX = points[2 * v] === 0 || points[2 * v] === farX;
-      const isY = points[2 * v + 1] === 0 || points[2 * v + 1] === farY;
-      const isCorner = isX && isY;
-      isTaken[v] = !isCorner && mayBeTaken(triangulation, v, isTaken);
-      return isTaken[v];
-    });
-    // The layer that is taken first comes last.
-    let place = left.length - layer.length;
-    for (const v of layer) placeVertex(hierarchy, place++, v, neighboursOf(triangulation, v));
-    for (const v of layer) triangulation.remove(v);
-    left = left.filter((v) => !isTaken[v]);
-  }
-  left.forEach((v, i) => placeVertex(hierarchy, i, v, left.subarray(Math.max(i - 1, 0), i)));
-  return hierarchy;
-}
-
-/** Whether a vertex has few enough triangles, and no neighbour of it has been taken. */
-function mayBeTaken(triangulation, v, isTaken) {
-  let nTriangles = 0;
-  for (const e of triangulation.edgesAround(v)) {
-    if (isTaken[triangulation.destOf(e)]) return false;
-    if (triangulation.hasTriangle(e)) nTriangles++;
-    if (nTriangles > MOST_TRIANGLES) return false;
-  }
-  return true;
-}
-
-function neighboursOf(triangulation, v) {
-  return triangulation.edgesAround(v).map((e) => triangulation.destOf(e));
-}
-
-function placeVertex(hierarchy, place, v, parents) {
-  hierarchy.order[place] = v;
-  hierarchy.nParents[place] = parents.length;
-  hierarchy.parents.set(parents, MOST_PARENTS * place);
-}
-
-/**
  * @param {import("./rangecoder.js").RangeDecoder} decoder
  * @param {import("./delaunay.js").Triangulation} triangulation the implied one; it is used up
- * @param {Uint8Array} steps one for each component
- * @param {number} farX
- * @param {number} farY
- * @returns {Int16Array} the levels of each vertex in turn
+ * @param {Uint8Array} sides of the canvas that each vertex is on
+ * @param {{steps: number[], depth: number}} header
+ * @returns {Int32Array} the levels of each vertex in turn
  */
-export function readLevels(decoder, triangulation, steps, farX, farY) {
+export function readLevels(decoder, triangulation, sides, { steps, depth }) {
   decoder.part = "colors";
-  const { order, nParents, parents } = hierarchyOf(triangulation, farX, farY);
+  const { order, parents } = hierarchyOf(triangulation, sides);
   const nComponents = steps.length;
-  const levels = new Int16Array(order.length * nComponents);
-  const readers = Array.from(steps, (step, component) => new LevelReader(decoder, component, step));
+  const levels = new Int32Array(order.length * nComponents);
+  const readers = steps.map((step, component) => {
+    return new LevelReader(decoder, component, Math.ceil((2 ** depth - 1) / step));
+  });
   const weights = new Float64Array(MOST_PARENTS);
   const known = new Float64Array(MOST_PARENTS);
 
-  order.forEach((v, place) => {
+  for (const v of order) {
     const own = v * nComponents;
-    const n = nParents[place];
     for (let component = 0; component < nComponents; component++) {
-      for (let i = 0; i < n; i++) {
-        const parent = parents[MOST_PARENTS * place + i] * nComponents;
+      let n = 0;
+      for (; n < MOST_PARENTS && parents[MOST_PARENTS * v + n] !== NO_PARENT; n++) {
+        const parent = parents[MOST_PARENTS * v + n] * nComponents;
         const difference = component === 0 ? 0 : Math.abs(levels[parent] - levels[own]);
-        weights[i] = Math.floor(FULL_WEIGHT / (1 + 2 * difference));
-        known[i] = levels[parent + component];
+        weights[n] = Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * difference)), 1);
+        known[n] = levels[parent + component];
       }
       levels[own + component] = readers[component].read(predict(weights, known, n));
     }
-  });
+  }
   return levels;
 }
 
 /** Prediction, spread and lean from the levels of n parents and their weights. */
 function predict(weights, known, n) {
-  if (n === 0) return { prediction: 0, spread: SPREAD_WITHOUT_PARENTS, lean: 0 };
+  if (n === 0) return { prediction: 0, spread: N_SPREADS - 1, lean: 0 };
   let w = 0;
   let t = 0;
-  let s = 0;
   for (let i = 0; i < n; i++) {
     w += weights[i];
     t += weights[i] * known[i];
-    s += weights[i] * known[i] * known[i];
   }
   const prediction = Math.floor((2 * t + w) / (2 * w));
   const rest = 20 * (t - prediction * w);
   const lean = rest > 3 * w ? 1 : rest < -3 * w ? 2 : 0;
-  return { prediction, spread: spreadOf(w, t, s), lean };
+  return { prediction, spread: spreadOf(weights, known, n, w, prediction), lean };
 }
 
 /**
- * How many thresholds the variance reaches. No quotient is needed, and both sides are exact: S * W
- * and T * T are below 2**48, 1024 is a power of two, and the right side is below 2**50.
+ * How many thresholds the variance reaches. No quotient is needed: the floor of a / b reaches an
+ * integer if a reaches b times it. All is exact: W is at most 9 * 4096 and a deviation at most 511,
+ * so S * W and D * D are at most (9 * 4096 * 511)**2 < 2**49, as is their difference; 1024 is a
+ * power of two; and the largest threshold times W * W is below 2**49.
  */
-function spreadOf(w, t, s) {
-  const numerator = 1024 * (s * w - t * t);
+function spreadOf(weights, known, n, w, prediction) {
+  let d = 0;
+  let s = 0;
+  for (let i = 0; i < n; i++) {
+    const deviation = clamp(known[i] - prediction, -MOST_DEVIATION, MOST_DEVIATION);
+    d += weights[i] * deviation;
+    s += weights[i] * deviation * deviation;
+  }
+  const numerator = 1024 * (s * w - d * d);
   let spread = 0;
   while (spread < SPREADS.length && numerator >= SPREADS[spread] * (w * w)) spread++;
   return spread;
 }
 
+function clamp(value, least, most) {
+  return Math.min(Math.max(value, least), most);
+}
+
 /** Reads the levels of one component. */
 class LevelReader {
-  constructor(decoder, component, step) {
+  constructor(decoder, component, highest) {
     this.decoder = decoder;
-    this.highest = Math.ceil(255 / step);
-    this.lowest = component === 1 || component === 2 ? -this.highest : 0;
-    this.sizes = sizeContexts(component);
+    this.highest = highest;
+    this.lowest = component === 1 || component === 2 ? -highest : 0;
+    this.sizes = sizeContexts(MORE_THAN[Math.min(component, 1)]);
     this.lengths = Contexts.even(N_SPREADS);
     this.bits = Contexts.even(N_SPREADS);
     this.signs = Contexts.even(3);
@@ -187,33 +131,31 @@ class LevelReader {
   }
 }
 
-function sizeContexts(component) {
-  const rows = MORE_THAN[Math.min(component, 1)];
-  const odds = [];
-  for (let spread = 0; spread < N_SPREADS; spread++) {
-    for (let size = 0; size < MOST_UNARY; size++) odds.push(2048 * rows[Math.min(size, 2)][spread]);
-  }
-  return Contexts.preset(odds);
+/** Contexts of the bits in unary: for each spread MOST_UNARY of them. */
+function sizeContexts([first, second, others]) {
+  const odds = first.map((_, spread) => {
+    const row = new Array(MOST_UNARY).fill(2048 * others[spread]);
+    row.splice(0, 2, 2048 * first[spread], 2048 * second[spread]);
+    return row;
+  });
+  return Contexts.preset(odds.flat());
 }
 
 /**
- * @param {Int16Array} levels
- * @param {Uint8Array} steps
- * @returns {Uint8ClampedArray} the samples of each vertex in turn (section 7.5)
+ * @param {Int32Array} levels of each vertex in turn
+ * @param {{steps: number[], depth: number}} header
+ * @returns {Uint8Array | Uint16Array} the samples of each vertex in turn (section 7.5)
  */
-export function samplesOf(levels, steps) {
+export function samplesOf(levels, { steps, depth }) {
   const n = steps.length;
-  const samples = new Uint8ClampedArray(levels.length);
-  for (let at = 0; at < levels.length; at++) samples[at] = levels[at] * steps[at % n];
-  if (n < 3) return samples;
-  for (let at = 0; at < levels.length; at += n) {
-    const orange = levels[at + 1] * steps[1];
-    const green = levels[at + 2] * steps[2];
-    const middle = levels[at] * steps[0] - (green >> 1);
-    const blue = middle - (orange >> 1);
-    samples[at] = blue + orange;
-    samples[at + 1] = green + middle;
-    samples[at + 2] = blue;
+  const values = levels.map((level, at) => level * steps[at % n]);
+  for (let at = 0; n >= 3 && at < levels.length; at += n) {
+    const middle = values[at] - (values[at + 2] >> 1);
+    const blue = middle - (values[at + 1] >> 1);
+    values[at] = blue + values[at + 1];
+    values[at + 1] = values[at + 2] + middle;
+    values[at + 2] = blue;
   }
-  return samples;
+  const samples = depth === 8 ? new Uint8Array(values.length) : new Uint16Array(values.length);
+  return samples.map((_, at) => clamp(values[at], 0, 2 ** depth - 1));
 }

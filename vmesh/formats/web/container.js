@@ -1,11 +1,11 @@
-/** Signature, header and chunks of a file: sections 3, 4 and 9 of the specification. */
+/** Signature, header and chunks of a file: sections 3 and 4 of the specification. */
 
 import { VmeshError, check } from "./errors.js";
-import { inflate } from "./inflate.js";
 
 const SIGNATURE = [0x8b, 0x56, 0x4d, 0x0d, 0x0a];
-const VERSION = 0x01;
-const METADATA_NAMES = { i: "icc", e: "exif", x: "xmp" };
+const MAJOR_VERSION = 1;
+/** Chunks of these tags occur once at most. */
+export const METADATA_TAGS = "iex";
 const LEVELS_PER_BYTE = 5700;
 
 const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
@@ -66,10 +66,6 @@ class Reader {
   }
 }
 
-function readSignature(reader) {
-  for (const expected of SIGNATURE) check(reader.byte() === expected, "signature");
-}
-
 /**
  * @typedef {object} Header
  * @property {number} width canvas in pixels
@@ -77,39 +73,43 @@ function readSignature(reader) {
  * @property {number} subdivision a pixel is 2**subdivision lattice units wide
  * @property {number} connectivity 0 implied, 1 listed, 2 flipped triangles
  * @property {number} nVertices
- * @property {Uint8Array} steps one for each colour component
+ * @property {number[]} steps one for each colour component
+ * @property {number} depth bits of a sample, 8 to 16
  * @property {number} farX x of the right border of the canvas, in lattice units
  * @property {number} farY y of the lower border
  */
 
 /** @returns {Header} */
 function readHeader(reader) {
-  readSignature(reader);
-  check(reader.byte() === VERSION, "version");
+  for (const expected of SIGNATURE) check(reader.byte() === expected, "signature");
+  check(reader.byte() >> 4 === MAJOR_VERSION, "version");
   const format = reader.byte();
+  const isDeep = (format & 3) === 1;
+  const components = isDeep ? reader.byte() : format & 3;
   const width = reader.varint("header");
   const height = reader.varint("header");
   const nVertices = reader.varint("header");
-  const nComponents = (format & 3) + 1;
-  const steps = reader.take(nComponents).slice();
+  const nComponents = (components & 3) + 1;
+  const steps = Array.from({ length: nComponents }, () => reader.varint("header"));
   reader.checksum(0);
 
   const subdivision = (format >> 2) & 15;
   const connectivity = format >> 6;
+  const depth = 8 + (components >> 2);
   const farX = width * 2 ** subdivision;
   const farY = height * 2 ** subdivision;
   check(1 <= width && width <= 65535 && 1 <= height && height <= 65535, "header");
   check(subdivision <= 8 && Math.max(farX, farY) <= 2 ** 19, "header");
   check(nComponents !== 2 && connectivity !== 3, "header");
   check(4 <= nVertices && nVertices <= (farX + 1) * (farY + 1), "header");
-  check(!steps.includes(0), "header");
-  return { width, height, subdivision, connectivity, nVertices, steps, farX, farY };
+  check(!isDeep || (9 <= depth && depth <= 16), "header");
+  check(steps.every((step) => 1 <= step && step < 2 ** depth), "header");
+  return { width, height, subdivision, connectivity, nVertices, steps, depth, farX, farY };
 }
 
 /** All chunks; the last one is `M`, with which the file must end. */
 function readChunks(reader) {
   const chunks = [];
-  const seen = new Set();
   let tag;
   do {
     const start = reader.position;
@@ -118,8 +118,7 @@ function readChunks(reader) {
     const content = reader.take(reader.varint("chunk"));
     reader.checksum(start);
     check(tag === "M" || /[a-z]/.test(tag), "chunk");
-    check(!(tag in METADATA_NAMES && seen.has(tag)), "chunk");
-    seen.add(tag);
+    check(!METADATA_TAGS.includes(tag) || chunks.every((chunk) => chunk.tag !== tag), "chunk");
     chunks.push({ tag, content });
   } while (tag !== "M");
   check(reader.atEnd(), "trailing");
@@ -128,9 +127,9 @@ function readChunks(reader) {
 
 /**
  * @param {Uint8Array} bytes a file
- * @param {{pixels: number, vertices: number, verticesPerByte: number, metadataBytes: number}} limits
- * @returns {{header: Header, content: Uint8Array, metadata: object, otherChunks: object[]}}
- *   `content` is that of the chunk `M`; it and `otherChunks` share memory with `bytes`
+ * @param {{pixels: number, vertices: number, verticesPerByte: number}} limits
+ * @returns {{header: Header, content: Uint8Array, chunks: {tag: string, content: Uint8Array}[]}}
+ *   `content` is that of the chunk `M`; it and the others share memory with `bytes`
  */
 export function readFile(bytes, limits) {
   const reader = new Reader(bytes);
@@ -143,13 +142,5 @@ export function readFile(bytes, limits) {
   const nLevels = header.nVertices * header.steps.length;
   check(nLevels <= LEVELS_PER_BYTE * (content.length + 1), "header");
   check(header.nVertices <= 65536 + limits.verticesPerByte * content.length, "limit");
-
-  const metadata = {};
-  const otherChunks = [];
-  for (const chunk of chunks) {
-    const name = METADATA_NAMES[chunk.tag];
-    if (name) metadata[name] = inflate(chunk.content, limits.metadataBytes);
-    else otherChunks.push(chunk);
-  }
-  return { header, content, metadata, otherChunks };
+  return { header, content, chunks };
 }

@@ -9,7 +9,10 @@
  * counterclockwise is the positive turn.
  */
 
-import { canonicalOrder, cross, isInCircle } from "./geometry.js";
+import { cross, isInCircle, sortedByEnds } from "./geometry.js";
+
+/** The twin of a half-edge on the border of the canvas. */
+export const NO_TWIN = -1;
 
 /**
  * Directed edges around their origins: edge e and its reverse e ^ 1 are next to each other in the
@@ -60,23 +63,29 @@ export class Triangulation {
     return cross(this.points, this.originOf[e], this.destOf(e), this.destOf(after)) > 0;
   }
 
-  /** The triangles of a canvas with all its corners, in canonical order. */
-  triangles() {
-    const nVertices = this.points.length / 2;
-    const triangles = new Int32Array(6 * nVertices);
-    let n = 0;
-    for (let v = 0; v < nVertices; v++) {
-      for (const e of this.edgesAround(v)) {
-        const second = this.destOf(e);
-        const third = this.destOf(this.nextAround[e]);
-        if (v < second && v < third && this.hasTriangle(e)) {
-          triangles[n++] = v;
-          triangles[n++] = second;
-          triangles[n++] = third;
-        }
+  /** The triangles of a canvas with all its corners, in canonical order, as in flips.js. */
+  halfEdges() {
+    const starts = [];
+    for (let e = 0; e < this.nEdges; e++) {
+      const [a, b, c] = [this.originOf[e], this.destOf(e), this.destOf(this.nextAround[e])];
+      if (a < b && a < c && this.hasTriangle(e)) starts.push(e);
+    }
+    const [originOf, destOf] = [(e) => this.originOf[e], (e) => this.destOf(e)];
+    const sorted = sortedByEnds(starts, originOf, destOf, this.points.length / 2);
+    const origin = new Int32Array(3 * sorted.length);
+    const twin = new Int32Array(3 * sorted.length);
+    const numberOf = new Int32Array(this.nEdges).fill(NO_TWIN);
+    let number = 0;
+    for (const start of sorted) {
+      for (const e of [start, this.nextOfFace(start), this.prevOfFace(start)]) {
+        origin[number] = this.originOf[e];
+        numberOf[e] = number++;
       }
     }
-    return canonicalOrder(triangles.subarray(0, n), nVertices);
+    numberOf.forEach((h, e) => {
+      if (h !== NO_TWIN) twin[h] = numberOf[e ^ 1];
+    });
+    return { origin, twin };
   }
 
   /** The edges that start at a vertex, in the direction of the positive turn. */
@@ -88,6 +97,10 @@ export class Triangulation {
       e = this.nextAround[e];
     } while (e !== edges[0]);
     return edges;
+  }
+
+  neighboursOf(v) {
+    return this.edgesAround(v).map((e) => this.destOf(e));
   }
 
   // Changing the subdivision
@@ -131,6 +144,8 @@ export class Triangulation {
   deleteEdge(e) {
     this.removeEnd(e);
     this.removeEnd(e ^ 1);
+    // No triangle starts with an edge from a vertex to itself.
+    this.originOf[e] = this.originOf[e ^ 1];
     this.freeEdges.push(e & ~1);
   }
 

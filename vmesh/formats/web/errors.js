@@ -1,7 +1,7 @@
 /** What each error code means (section 12 of the specification), and "limit" of this decoder. */
 const MEANINGS = {
   signature: "the file does not begin with the signature",
-  version: "the version is not 0.1",
+  version: "the major version is not 1",
   truncated: "the file ends too early",
   header: "a field of the header is out of range",
   checksum: "a CRC-32 is wrong",

@@ -3,11 +3,7 @@
  * y of each vertex in turn, as integers of at most 2**19; vertices are named by their numbers.
  */
 
-/**
- * @param {Int32Array} points
- * @returns {number} doubled area of the triangle a, b, c; positive if it turns from x towards y.
- *   It is below 2**40 and so exact.
- */
+/** Doubled area of the triangle a, b, c, positive if it turns from x towards y; at most 2**38. */
 export function cross(points, a, b, c) {
   const ax = points[2 * a];
   const ay = points[2 * a + 1];
@@ -40,20 +36,14 @@ function inCircleSign(points, a, b, c, d) {
   const size = aLift * Math.abs(aMinor) + bLift * Math.abs(bMinor) + cLift * Math.abs(cMinor);
   // Three products and two sums are rounded, each by no more than size * 2**-53, if at all.
   if (size < 2 ** 53 || Math.abs(sum) > size * 2 ** -50) return sum;
-  const exact =
-    BigInt(aLift) * BigInt(aMinor) +
-    BigInt(bLift) * BigInt(bMinor) +
-    BigInt(cLift) * BigInt(cMinor);
-  return Number(exact);
+  const product = (lift, minor) => BigInt(lift) * BigInt(minor);
+  return Number(product(aLift, aMinor) + product(bLift, bMinor) + product(cLift, cMinor));
 }
 
 /**
  * Whether d is inside the circle of the positive triangle a, b, c. On the circle the tie rule
  * decides: the four are a convex quad, of which the diagonal at the highest number is kept. So d
  * counts as inside if it is the highest, or if it lies beyond the side opposite to the highest.
- *
- * @param {Int32Array} points
- * @returns {boolean}
  */
 export function isInCircle(points, a, b, c, d) {
   const sign = inCircleSign(points, a, b, c, d);
@@ -65,84 +55,31 @@ export function isInCircle(points, a, b, c, d) {
   return true;
 }
 
-/**
- * The places of pairs in ascending order of the pairs, by a counting sort.
- *
- * @param {Int32Array} first numbers from 0 to nKeys - 1
- * @param {Int32Array} second likewise
- * @param {number} nKeys
- * @returns {Int32Array}
- */
-export function orderOfPairs(first, second, nKeys) {
-  const places = new Int32Array(first.length);
-  for (let i = 0; i < places.length; i++) places[i] = i;
-  return sortedByKey(sortedByKey(places, second, nKeys), first, nKeys);
-}
-
-function sortedByKey(places, keys, nKeys) {
-  const next = new Int32Array(nKeys + 1);
-  for (const place of places) next[keys[place] + 1]++;
-  for (let key = 0; key < nKeys; key++) next[key + 1] += next[key];
-  const sorted = new Int32Array(places.length);
-  for (const place of places) sorted[next[keys[place]]++] = place;
-  return sorted;
-}
-
-/**
- * @param {Int32Array} triangles three vertices each, of positive turn
- * @param {number} nVertices
- * @returns {Int32Array} the same triangles in canonical order
- */
-export function canonicalOrder(triangles, nVertices) {
-  const n = triangles.length / 3;
-  const firstPlace = new Int32Array(n);
-  const first = new Int32Array(n);
-  const second = new Int32Array(n);
-  for (let t = 0; t < n; t++) {
-    let e = 3 * t;
-    if (triangles[3 * t + 1] < triangles[e]) e = 3 * t + 1;
-    if (triangles[3 * t + 2] < triangles[e]) e = 3 * t + 2;
-    firstPlace[t] = e;
-    first[t] = triangles[e];
-    second[t] = triangles[nextOf(e)];
-  }
-  const sorted = new Int32Array(3 * n);
-  // First and second vertex tell triangles apart: each directed edge has one triangle.
-  orderOfPairs(first, second, nVertices).forEach((t, place) => {
-    sorted[3 * place] = first[t];
-    sorted[3 * place + 1] = second[t];
-    sorted[3 * place + 2] = triangles[prevOf(firstPlace[t])];
+/** The sides of the canvas that each vertex is on: the sum of 1 left, 2 right, 4 top, 8 bottom. */
+export function sidesOf(points, farX, farY) {
+  return Uint8Array.from({ length: points.length / 2 }, (_, v) => {
+    const x = points[2 * v];
+    const y = points[2 * v + 1];
+    return (x === 0) + 2 * (x === farX) + 4 * (y === 0) + 8 * (y === farY);
   });
+}
+
+/** @param {number} sides that a vertex is on */
+export function isCorner(sides) {
+  return (sides & 3) > 0 && (sides & 12) > 0;
+}
+
+/** Numbers of edges, sorted by origin and then by destination. */
+export function sortedByEnds(edges, originOf, destOf, nVertices) {
+  return sortedBy(sortedBy(edges, destOf, nVertices), originOf, nVertices);
+}
+
+/** A counting sort, which keeps the order of those whose keys, below `nKeys`, are the same. */
+function sortedBy(edges, keyOf, nKeys) {
+  const next = new Int32Array(nKeys + 1);
+  for (const e of edges) next[keyOf(e) + 1]++;
+  for (let key = 0; key < nKeys; key++) next[key + 1] += next[key];
+  const sorted = new Int32Array(edges.length);
+  for (const e of edges) sorted[next[keyOf(e)]++] = e;
   return sorted;
-}
-
-/**
- * The half-edges of triangles, in the order of the edges they belong to: those of one edge, in
- * either direction, are next to each other.
- *
- * @param {Int32Array} triangles three vertices each
- * @param {number} nVertices
- * @returns {{order: Int32Array, low: Int32Array, high: Int32Array}} `order` of the half-edges, and
- *   the lower and the higher end of each
- */
-export function halfEdgesByEdge(triangles, nVertices) {
-  const low = new Int32Array(triangles.length);
-  const high = new Int32Array(triangles.length);
-  for (let e = 0; e < triangles.length; e++) {
-    const u = triangles[e];
-    const v = triangles[nextOf(e)];
-    low[e] = Math.min(u, v);
-    high[e] = Math.max(u, v);
-  }
-  return { order: orderOfPairs(low, high, nVertices), low, high };
-}
-
-/** The half-edge after e in its triangle; triangle t has 3 t, 3 t + 1 and 3 t + 2. */
-export function nextOf(e) {
-  return e % 3 === 2 ? e - 2 : e + 1;
-}
-
-/** The half-edge before e in its triangle. */
-export function prevOf(e) {
-  return e % 3 === 0 ? e + 2 : e - 1;
 }

@@ -5,8 +5,6 @@ export const DEFAULT_LIMITS = Object.freeze({
   vertices: 2 ** 22,
   /** Vertices for each byte of the coded mesh, beyond the first 65,536. */
   verticesPerByte: 8,
-  /** Bytes to which each metadata chunk may inflate. */
-  metadataBytes: 2 ** 24,
   /** Sum over all triangles of the rows of pixels that each one spans. */
   triangleRows: 2 ** 26,
 });

@@ -6,6 +6,17 @@ const FEW = 8;
 const LONGEST_LOG_AREA = 39;
 const MOST_BITS = 23;
 const ODDS_OF_SMALL_HALF = 2048;
+/** Odds that more vertices than a middle are in the first half, for each count and middle. */
+const SHARES = [
+  [],
+  [32768],
+  [43690, 16384],
+  [49152, 32768, 16384],
+  [52428, 35746, 20480, 13107],
+  [54613, 40960, 32768, 21845, 4096],
+  [56173, 54613, 37449, 22528, 18724, 2978],
+  [57344, 57344, 40960, 32768, 24576, 8192, 8192],
+];
 
 /**
  * @param {import("./rangecoder.js").RangeDecoder} decoder
@@ -75,7 +86,7 @@ class CountReader {
       const middle = Math.floor((low + high) / 2);
       const isMore =
         count < FEW
-          ? this.decoder.bit(this.few, fewContext(logArea, count, middle))
+          ? this.decoder.bit(this.few, (logArea * FEW + count) * FEW + middle)
           : this.decoder.bit(this.many, manyContext(count, depth));
       if (isMore) low = middle + 1;
       else high = middle;
@@ -84,47 +95,20 @@ class CountReader {
   }
 }
 
-function fewContext(logArea, count, middle) {
-  return (Math.min(logArea, LONGEST_LOG_AREA) * FEW + count) * FEW + middle;
-}
-
 function manyContext(count, depth) {
   const log = bitLength(count) - 1;
   return Math.min(log, MOST_BITS) * (MOST_BITS + 1) + Math.min(depth, MOST_BITS);
 }
 
+/** Contexts for counts below FEW: a table as SHARES for each logarithm of an area. */
 function fewContexts() {
-  const odds = new Array((LONGEST_LOG_AREA + 1) * FEW * FEW).fill(0);
-  for (let count = 1; count < FEW; count++) {
-    for (let middle = 0; middle < count; middle++) {
-      const share = binomialShare(count, middle);
-      for (let logArea = 0; logArea <= LONGEST_LOG_AREA; logArea++) {
-        odds[fewContext(logArea, count, middle)] = logArea < 2 ? ODDS_OF_SMALL_HALF : share;
+  const odds = [];
+  for (let logArea = 0; logArea <= LONGEST_LOG_AREA; logArea++) {
+    for (const shares of SHARES) {
+      for (let middle = 0; middle < FEW; middle++) {
+        odds.push(logArea < 2 ? ODDS_OF_SMALL_HALF : (shares[middle] ?? 0));
       }
     }
   }
   return Contexts.preset(odds);
-}
-
-/** Share of the counts above a middle of the bisection of 0 to `count`, in units of 2**-16. */
-function binomialShare(count, middle) {
-  let low = 0;
-  let high = count;
-  for (let mean = count >> 1; mean !== middle; mean = (low + high) >> 1) {
-    if (mean < middle) low = mean + 1;
-    else high = mean;
-  }
-  const above = binomialSum(count, middle + 1, high);
-  return Math.floor((65536 * above) / binomialSum(count, low, high));
-}
-
-/** Sum of the binomial coefficients (count over k) for k from `first` to `last`. */
-function binomialSum(count, first, last) {
-  let coefficient = 1;
-  let sum = 0;
-  for (let k = 0; k <= last; k++) {
-    if (k >= first) sum += coefficient;
-    coefficient = (coefficient * (count - k)) / (k + 1);
-  }
-  return sum;
 }

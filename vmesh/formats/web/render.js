@@ -7,69 +7,76 @@ import { DEFAULT_LIMITS } from "./limits.js";
 /**
  * @param {import("./vmesh.js").Mesh} mesh
  * @param {{pixels?: number, triangleRows?: number}} [limits] see DEFAULT_LIMITS
- * @returns {{width: number, height: number, depth: number, data: Uint8Array}} `data` holds
- *   `depth` samples for each pixel, row by row: grey, or RGB, or RGB and alpha (not multiplied)
+ * @returns {{width: number, height: number, components: number, depth: number,
+ *   data: Uint8Array | Uint16Array}} `data` holds the samples of each pixel, row by row: grey, or
+ *   RGB, or RGB and alpha (not multiplied); those of more than 8 bits are 16 bits wide
  */
 export function render(mesh, limits = {}) {
   const { pixels, triangleRows } = { ...DEFAULT_LIMITS, ...limits };
-  const { width, height } = mesh;
-  const depth = mesh.steps.length;
+  const { width, height, depth, samples, triangles } = mesh;
+  const components = mesh.steps.length;
   check(width * height <= pixels, "limit");
   check(countRows(mesh) <= triangleRows, "limit");
-  const data = new Uint8Array(width * height * depth);
-  const rasterizer = new Rasterizer(mesh, { width, height, depth, data });
-  for (let at = 0; at < mesh.triangles.length; at += 3) rasterizer.draw(at);
-  return { width, height, depth, data };
+  const data = new samples.constructor(width * height * components);
+  const rasterizer = new Rasterizer(mesh, data);
+  for (let at = 0; at < triangles.length; at += 3) rasterizer.draw(at);
+  return { width, height, components, depth, data };
 }
 
 /** The rows of all triangles: without the pixels, the work of rendering. */
-function countRows({ vertices, triangles, subdivision, height }) {
+function countRows(mesh) {
   let count = 0;
-  for (let at = 0; at < triangles.length; at += 3) {
-    const [first, last] = rowsOf(vertices, triangles, at, 2 ** (subdivision + 1), height);
+  for (let at = 0; at < mesh.triangles.length; at += 3) {
+    const [first, last] = rowsOf(mesh, at);
     count += Math.max(0, last - first + 1);
   }
   return count;
 }
 
 /** The first and the last row whose pixel centres are within the height of a triangle. */
-function rowsOf(vertices, triangles, at, pixel, height) {
-  const ys = [0, 1, 2].map((i) => 2 * vertices[2 * triangles[at + i] + 1]);
-  const first = Math.ceil((Math.min(...ys) - pixel / 2) / pixel);
-  const last = Math.floor((Math.max(...ys) - pixel / 2) / pixel);
+function rowsOf({ vertices, triangles, subdivision, height }, at) {
+  const pixel = 1 << subdivision;
+  const y0 = vertices[2 * triangles[at] + 1];
+  const y1 = vertices[2 * triangles[at + 1] + 1];
+  const y2 = vertices[2 * triangles[at + 2] + 1];
+  const first = Math.ceil(Math.min(y0, y1, y2) / pixel - 0.5);
+  const last = Math.floor(Math.max(y0, y1, y2) / pixel - 0.5);
   return [first, Math.min(last, height - 1)];
 }
 
 /**
  * Fills triangles row by row. Coordinates are in half lattice units, where centres of pixels are
- * integers. All numbers are integers below 2**53, and so exact: coordinates are at most 2**20,
- * doubled areas below 2**42, their sums with samples below 2**51.
- *
- * Weight i of a pixel is the doubled area that its centre forms with the side opposite to corner
- * i. It is linear: `atOrigin[i] + perColumn[i] * x + perRow[i] * y`.
+ * integers of at most 2**20. Weight i of a pixel is the doubled area that its centre forms with the
+ * side opposite to corner i, so at most 2**40. It is linear: `atOrigin[i] + perColumn[i] * x +
+ * perRow[i] * y`.
  */
 class Rasterizer {
-  constructor(mesh, picture) {
+  constructor(mesh, data) {
     this.mesh = mesh;
-    this.picture = picture;
+    this.mostDet = 2 ** (52 - mesh.depth);
+    this.components = mesh.steps.length;
+    this.data = data;
     this.pixel = 2 ** (mesh.subdivision + 1);
     this.atOrigin = new Float64Array(3);
     this.perColumn = new Float64Array(3);
     this.perRow = new Float64Array(3);
+    /** The least weights of the pixels of the triangle: by the top-left rule 0 or 1. */
+    this.least = new Float64Array(3);
     /** Weights at column 0 of the current row. */
     this.atRow = new Float64Array(3);
-    /** The least weights of the pixels of the triangle. */
-    this.least = new Float64Array(3);
+    /** Weights at the first pixel of the current row. */
+    this.weights = new Float64Array(3);
   }
 
   /** @param {number} at place of the triangle's first corner */
   draw(at) {
     const { vertices, triangles } = this.mesh;
-    for (let i = 0; i < 3; i++) {
-      this.setSide(i, triangles[at + ((i + 1) % 3)], triangles[at + ((i + 2) % 3)]);
-    }
-    const det = 4 * cross(vertices, triangles[at], triangles[at + 1], triangles[at + 2]);
-    const [first, last] = rowsOf(vertices, triangles, at, this.pixel, this.picture.height);
+    const [a, b, c] = [triangles[at], triangles[at + 1], triangles[at + 2]];
+    this.setSide(0, b, c);
+    this.setSide(1, c, a);
+    this.setSide(2, a, b);
+    const det = 4 * cross(vertices, a, b, c);
+    const [first, last] = rowsOf(this.mesh, at);
     for (let y = first; y <= last; y++) {
       for (let i = 0; i < 3; i++) this.atRow[i] = this.atOrigin[i] + this.perRow[i] * y;
       this.drawRow(at, det, y);
@@ -87,14 +94,13 @@ class Rasterizer {
     this.atOrigin[i] = dx * (centre - uy) - dy * (centre - ux);
     this.perColumn[i] = -dy * this.pixel;
     this.perRow[i] = dx * this.pixel;
-    const isTopLeft = dy < 0 || (dy === 0 && dx > 0);
-    this.least[i] = isTopLeft ? 0 : 1;
+    this.least[i] = dy < 0 || (dy === 0 && dx > 0) ? 0 : 1;
   }
 
   drawRow(at, det, y) {
     const { atRow, perColumn, least } = this;
     let start = 0;
-    let end = this.picture.width - 1;
+    let end = this.mesh.width - 1;
     for (let i = 0; i < 3; i++) {
       const spare = atRow[i] - least[i];
       if (perColumn[i] > 0) start = Math.max(start, Math.ceil(-spare / perColumn[i]));
@@ -104,25 +110,50 @@ class Rasterizer {
     if (start <= end) this.fill(at, det, y, start, end);
   }
 
-  /** Interpolates the samples of the pixels from `start` to `end` in a row. */
+  /**
+   * Interpolates the samples of the pixels from `start` to `end` in a row. Numerators are below
+   * det * 2**(depth + 1). Up to 2**53 they are exact, and so is the floor of a quotient.
+   */
   fill(at, det, y, start, end) {
-    const { mesh, picture, atRow, perColumn } = this;
-    const { width, depth, data } = picture;
-    for (let component = 0; component < depth; component++) {
-      let total = 0;
-      let step = 0;
-      for (let i = 0; i < 3; i++) {
-        const sample = mesh.samples[mesh.triangles[at + i] * depth + component];
-        total += sample * (atRow[i] + perColumn[i] * start);
-        step += sample * perColumn[i];
+    const { components, data, perColumn, weights, mostDet } = this;
+    const { samples, triangles, width } = this.mesh;
+    for (let i = 0; i < 3; i++) weights[i] = this.atRow[i] + perColumn[i] * start;
+    for (let component = 0; component < components; component++) {
+      const c0 = samples[triangles[at] * components + component];
+      const c1 = samples[triangles[at + 1] * components + component];
+      const c2 = samples[triangles[at + 2] * components + component];
+      let place = (y * width + start) * components + component;
+      if (det > mostDet) {
+        this.fillInParts([c0, c1, c2], det, place, start, end);
+        continue;
       }
-      let numerator = 2 * total + det;
-      let place = (y * width + start) * depth + component;
+      let numerator = 2 * (c0 * weights[0] + c1 * weights[1] + c2 * weights[2]) + det;
+      const step = 2 * (c0 * perColumn[0] + c1 * perColumn[1] + c2 * perColumn[2]);
       for (let x = start; x <= end; x++) {
         data[place] = Math.floor(numerator / (2 * det));
-        numerator += 2 * step;
-        place += depth;
+        numerator += step;
+        place += components;
       }
+    }
+  }
+
+  /**
+   * Sums the upper and the lower bytes of the samples apart: both sums are at most 255 * 2**40, and
+   * with the remainder of the upper one, which is below det, all numbers stay below 2**51.
+   */
+  fillInParts(corners, det, place, start, end) {
+    for (let x = start; x <= end; x++) {
+      let upper = 0;
+      let lower = 0;
+      corners.forEach((sample, i) => {
+        const weight = this.atRow[i] + this.perColumn[i] * x;
+        upper += weight * (sample >> 8);
+        lower += weight * (sample & 255);
+      });
+      const whole = Math.floor(upper / det);
+      const rest = 256 * (upper - whole * det) + lower;
+      this.data[place] = 256 * whole + Math.floor((2 * rest + det) / (2 * det));
+      place += this.components;
     }
   }
 }

@@ -1,17 +1,19 @@
 /**
- * Decoder and renderer of `.vmesh` files, draft 1 (spec/vmesh.md). Written from the specification
- * alone, without dependencies, for browsers and Node.
+ * Decoder and renderer of `.vmesh` files, version 1.0 (spec/vmesh.md). Written from the
+ * specification alone, without dependencies, for browsers and Node.
  */
 
 import { readLevels, samplesOf } from "./colors.js";
 import { readFile } from "./container.js";
 import { Triangulation } from "./delaunay.js";
 import { VmeshError, check } from "./errors.js";
+import { readFlips } from "./flips.js";
+import { isCorner, sidesOf } from "./geometry.js";
 import { DEFAULT_LIMITS } from "./limits.js";
+import { checkGeometry, readTriangles } from "./list.js";
 import { readPositions } from "./positions.js";
 import { RangeDecoder } from "./rangecoder.js";
 import { render } from "./render.js";
-import { checkGeometry, readFlips, readTriangles } from "./triangles.js";
 
 export { DEFAULT_LIMITS, VmeshError, render };
 
@@ -25,13 +27,15 @@ const FLIPPED = 2;
  * @property {number} width canvas in pixels
  * @property {number} height
  * @property {number} subdivision a pixel is 2**subdivision lattice units wide
- * @property {Uint8Array} steps c of them; a level times its step is a value
+ * @property {number} depth bits of a sample, 8 to 16
+ * @property {number[]} steps c of them; a level times its step is a value
  * @property {Int32Array} vertices 2 n: x, y in lattice units, in raster order
- * @property {Int16Array} levels c n: as stored
- * @property {Uint8ClampedArray} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
+ * @property {Int32Array} levels c n: as stored
+ * @property {Uint8Array | Uint16Array} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
  * @property {Int32Array} triangles 3 m: vertex numbers, in canonical order
- * @property {{icc?: Uint8Array, exif?: Uint8Array, xmp?: Uint8Array}} metadata inflated
- * @property {{tag: string, content: Uint8Array}[]} otherChunks of unknown ancillary tags
+ * @property {{tag: string, content: Uint8Array}[]} chunks all but the mesh, as they are stored. The
+ *   contents of `i` (an ICC profile), `e` (EXIF) and `x` (XMP) are zlib streams, not looked at here:
+ *   `DecompressionStream("deflate")` inflates them, and whoever does so should bound the length
  */
 
 /**
@@ -43,40 +47,30 @@ const FLIPPED = 2;
  * @throws {VmeshError} if the file is invalid or exceeds a limit
  */
 export function decode(bytes, limits = {}) {
-  const { header, content, metadata, otherChunks } = readFile(bytes, {
-    ...DEFAULT_LIMITS,
-    ...limits,
-  });
-  const { width, height, subdivision, steps } = header;
+  const { header, content, chunks } = readFile(bytes, { ...DEFAULT_LIMITS, ...limits });
+  const { width, height, subdivision, depth, steps } = header;
   const mesh = readMesh(header, new RangeDecoder(content));
-  return { width, height, subdivision, steps, ...mesh, metadata, otherChunks };
+  return { width, height, subdivision, depth, steps, ...mesh, chunks };
 }
 
 /** Decodes the content of the chunk `M`. */
-function readMesh({ connectivity, nVertices, steps, farX, farY }, decoder) {
+function readMesh(header, decoder) {
+  const { connectivity, nVertices, farX, farY, steps } = header;
   const vertices = readPositions(decoder, nVertices, farX + 1, farY + 1);
-  checkCorners(vertices, farX, farY);
+  const sides = sidesOf(vertices, farX, farY);
+  check(sides.filter(isCorner).length === 4, "geometry");
   const triangulation = new Triangulation(vertices);
-  let triangles = triangulation.triangles();
-  const levels = readLevels(decoder, triangulation, steps, farX, farY);
+  const halfEdges = triangulation.halfEdges();
+  const levels = readLevels(decoder, triangulation, sides, header);
+  let triangles = halfEdges.origin;
   if (connectivity === LISTED) {
-    triangles = readTriangles(decoder, vertices, farX, farY);
-    checkGeometry(vertices, triangles, farX, farY);
+    triangles = readTriangles(decoder, sides);
+    checkGeometry(vertices, triangles, sides, 2 * farX * farY);
   }
   if (connectivity === FLIPPED) {
     const luma = levels.filter((_, i) => i % steps.length === 0);
-    triangles = readFlips(decoder, vertices, triangles, luma);
+    triangles = readFlips(decoder, vertices, halfEdges, luma);
   }
   decoder.end();
-  return { vertices, levels, samples: samplesOf(levels, steps), triangles };
-}
-
-function checkCorners(vertices, farX, farY) {
-  let nCorners = 0;
-  for (let at = 0; at < vertices.length; at += 2) {
-    const isX = vertices[at] === 0 || vertices[at] === farX;
-    const isY = vertices[at + 1] === 0 || vertices[at + 1] === farY;
-    if (isX && isY) nCorners++;
-  }
-  check(nCorners === 4, "geometry");
+  return { vertices, levels, samples: samplesOf(levels, header), triangles };
 }

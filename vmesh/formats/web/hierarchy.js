@@ -1,0 +1,52 @@
+/** The order in which colours are coded, from coarse to fine: section 7.2 of the specification. */
+
+import { isCorner } from "./geometry.js";
+
+const MOST_TRIANGLES = 8;
+/** A vertex on the border of the canvas has one neighbour more than triangles. */
+export const MOST_PARENTS = MOST_TRIANGLES + 1;
+/** Fills the rows of vertices that have fewer parents. */
+export const NO_PARENT = -1;
+
+/**
+ * Thins the triangulation layer by layer. A layer's vertices are no neighbours, so to remove one
+ * after the other gives the Delaunay triangulation of those that are left.
+ *
+ * @param {import("./delaunay.js").Triangulation} triangulation is used up: four corners are left
+ * @param {Uint8Array} sides of the canvas that each vertex is on
+ * @returns {{order: Int32Array, parents: Int32Array}} vertices in the order in which their colours
+ *   are coded, and a row of MOST_PARENTS for each vertex
+ */
+export function hierarchyOf(triangulation, sides) {
+  const order = new Int32Array(sides.length);
+  const parents = new Int32Array(MOST_PARENTS * sides.length).fill(NO_PARENT);
+  const isTaken = new Uint8Array(sides.length);
+  let left = order.map((_, v) => v);
+  while (left.length > 4) {
+    const layer = left.filter((v) => {
+      isTaken[v] = !isCorner(sides[v]) && mayBeTaken(triangulation, v, isTaken);
+      return isTaken[v];
+    });
+    // The layer that is taken first comes last.
+    order.set(layer, left.length - layer.length);
+    for (const v of layer) {
+      parents.set(triangulation.neighboursOf(v), MOST_PARENTS * v);
+      triangulation.remove(v);
+    }
+    left = left.filter((v) => !isTaken[v]);
+  }
+  order.set(left);
+  for (let i = 1; i < 4; i++) parents[MOST_PARENTS * left[i]] = left[i - 1];
+  return { order, parents };
+}
+
+/** Whether a vertex has few enough triangles, and no neighbour of it has been taken. */
+function mayBeTaken(triangulation, v, isTaken) {
+  let nTriangles = 0;
+  for (const e of triangulation.edgesAround(v)) {
+    if (isTaken[triangulation.destOf(e)]) return false;
+    if (triangulation.hasTriangle(e)) nTriangles++;
+    if (nTriangles > MOST_TRIANGLES) return false;
+  }
+  return true;
+}
