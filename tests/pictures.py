@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import UInt8Array
-from vmesh.kernels.scanline import SUBPIXEL, fill
+from vmesh.arrays import SampleArray, UInt8Array
+from vmesh.kernels.scanline import SUBPIXEL, draw
 from vmesh.mesh import Mesh
 
 
@@ -85,11 +85,12 @@ PICTURES: Final[dict[str, UInt8Array]] = {
 }
 
 
-def drawn(mesh: Mesh) -> UInt8Array:
-    """Pixels of a mesh at its own size, shape (h, w, c), uint8; 0 where nothing is drawn."""
-    raster = np.zeros((mesh.height, mesh.width, mesh.n_components), dtype=np.uint8)
+def drawn(mesh: Mesh) -> SampleArray:
+    """Pixels of a mesh at its own size, shape (h, w, c); 0 where nothing is drawn."""
+    colors = mesh.colors
+    raster = np.zeros((mesh.height, mesh.width, mesh.n_components), dtype=colors.dtype)
     positions = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
-    fill(positions, mesh.triangles, mesh.colors, raster)
+    draw(positions, mesh.triangles, colors, raster)
     return raster
 
 

@@ -48,8 +48,8 @@ _EFFORTS: Final = {
     5: Effort(density=0.045, max_rounds=16, least_gain=0.06, share_decay=0.85),
     6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
     7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
-    8: Effort(density=0.25, max_rounds=24, least_gain=0.004, share_decay=0.95),
-    9: Effort(density=0.25, max_rounds=32, least_gain=0.0, share_decay=0.96),
+    8: Effort(density=0.25, max_rounds=32, least_gain=0.004, share_decay=0.96),
+    9: Effort(density=0.25, max_rounds=64, least_gain=0.0, share_decay=0.98),
 }
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3
@@ -61,7 +61,7 @@ _REFINEMENT_GAIN: Final = 1.6
 
 # About so many steps, for the display of progress.
 _THINNING_STEPS: Final = 4
-_REFINEMENT_STEPS: Final = {2: 2, 3: 3, 4: 4, 5: 5, 6: 7, 7: 10, 8: 16, 9: 28}
+_REFINEMENT_STEPS: Final = {2: 2, 3: 3, 4: 4, 5: 5, 6: 7, 7: 10, 8: 20, 9: 50}
 
 _BLUE_NOISE_STEP: Final = 8
 
