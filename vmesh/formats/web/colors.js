@@ -47,14 +47,17 @@ export function readLevels(decoder, triangulation, sides, { steps, depth }) {
       let n = 0;
       for (; n < MOST_PARENTS && parents[MOST_PARENTS * v + n] !== NO_PARENT; n++) {
         const parent = parents[MOST_PARENTS * v + n] * nComponents;
-        const difference = component === 0 ? 0 : Math.abs(levels[parent] - levels[own]);
-        weights[n] = Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * difference)), 1);
+        weights[n] = component === 0 ? FULL_WEIGHT : weightOf(levels[parent] - levels[own]);
         known[n] = levels[parent + component];
       }
       levels[own + component] = readers[component].read(predict(weights, known, n));
     }
   }
   return levels;
+}
+
+function weightOf(difference) {
+  return Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * Math.abs(difference))), 1);
 }
 
 /** Prediction, spread and lean from the levels of n parents and their weights. */
@@ -148,6 +151,7 @@ function sizeContexts([first, second, others]) {
  */
 export function samplesOf(levels, { steps, depth }) {
   const n = steps.length;
+  const largest = 2 ** depth - 1;
   const values = levels.map((level, at) => level * steps[at % n]);
   for (let at = 0; n >= 3 && at < levels.length; at += n) {
     const middle = values[at] - (values[at + 2] >> 1);
@@ -157,5 +161,6 @@ export function samplesOf(levels, { steps, depth }) {
     values[at + 2] = blue;
   }
   const samples = depth === 8 ? new Uint8Array(values.length) : new Uint16Array(values.length);
-  return samples.map((_, at) => clamp(values[at], 0, 2 ** depth - 1));
+  for (let at = 0; at < values.length; at++) samples[at] = clamp(values[at], 0, largest);
+  return samples;
 }

@@ -9,152 +9,15 @@
  * counterclockwise is the positive turn.
  */
 
-import { cross, isInCircle, sortedByEnds } from "./geometry.js";
+import { cross, isInCircle } from "./geometry.js";
+import { Subdivision } from "./subdivision.js";
 
-/** The twin of a half-edge on the border of the canvas. */
-export const NO_TWIN = -1;
-
-/**
- * Directed edges around their origins: edge e and its reverse e ^ 1 are next to each other in the
- * tables. "Next" is in the direction of the positive turn.
- */
-export class Triangulation {
+export class Triangulation extends Subdivision {
   /** @param {Int32Array} points x and y of distinct vertices in raster order, at least two */
   constructor(points) {
-    const nVertices = points.length / 2;
-    this.points = points;
-    this.nEdges = 0;
-    this.freeEdges = [];
-    this.originOf = new Int32Array(6 * nVertices);
-    this.nextAround = new Int32Array(6 * nVertices);
-    this.prevAround = new Int32Array(6 * nVertices);
-    /** An edge that starts at each vertex. */
-    this.edgeFrom = new Int32Array(nVertices);
-    this.divide(0, nVertices);
+    super(points);
+    this.divide(0, points.length / 2);
   }
-
-  // Reading the subdivision
-
-  destOf(e) {
-    return this.originOf[e ^ 1];
-  }
-
-  /** The edge after e around the face on its left. */
-  nextOfFace(e) {
-    return this.prevAround[e ^ 1];
-  }
-
-  /** The edge before e around the face on its left. */
-  prevOfFace(e) {
-    return this.nextAround[e] ^ 1;
-  }
-
-  isLeftOf(v, e) {
-    return cross(this.points, v, this.originOf[e], this.destOf(e)) > 0;
-  }
-
-  isRightOf(v, e) {
-    return cross(this.points, v, this.destOf(e), this.originOf[e]) > 0;
-  }
-
-  /** Whether the face on the left of e is a triangle; the face outside the canvas is not. */
-  hasTriangle(e) {
-    const after = this.nextAround[e];
-    return cross(this.points, this.originOf[e], this.destOf(e), this.destOf(after)) > 0;
-  }
-
-  /** The triangles of a canvas with all its corners, in canonical order, as in flips.js. */
-  halfEdges() {
-    const starts = [];
-    for (let e = 0; e < this.nEdges; e++) {
-      const [a, b, c] = [this.originOf[e], this.destOf(e), this.destOf(this.nextAround[e])];
-      if (a < b && a < c && this.hasTriangle(e)) starts.push(e);
-    }
-    const [originOf, destOf] = [(e) => this.originOf[e], (e) => this.destOf(e)];
-    const sorted = sortedByEnds(starts, originOf, destOf, this.points.length / 2);
-    const origin = new Int32Array(3 * sorted.length);
-    const twin = new Int32Array(3 * sorted.length);
-    const numberOf = new Int32Array(this.nEdges).fill(NO_TWIN);
-    let number = 0;
-    for (const start of sorted) {
-      for (const e of [start, this.nextOfFace(start), this.prevOfFace(start)]) {
-        origin[number] = this.originOf[e];
-        numberOf[e] = number++;
-      }
-    }
-    numberOf.forEach((h, e) => {
-      if (h !== NO_TWIN) twin[h] = numberOf[e ^ 1];
-    });
-    return { origin, twin };
-  }
-
-  /** The edges that start at a vertex, in the direction of the positive turn. */
-  edgesAround(v) {
-    const edges = [];
-    let e = this.edgeFrom[v];
-    do {
-      edges.push(e);
-      e = this.nextAround[e];
-    } while (e !== edges[0]);
-    return edges;
-  }
-
-  neighboursOf(v) {
-    return this.edgesAround(v).map((e) => this.destOf(e));
-  }
-
-  // Changing the subdivision
-
-  makeEdge(origin, dest) {
-    let e = this.freeEdges.pop();
-    if (e === undefined) {
-      e = this.nEdges;
-      this.nEdges += 2;
-    }
-    this.addEnd(e, origin);
-    this.addEnd(e ^ 1, dest);
-    return e;
-  }
-
-  addEnd(e, origin) {
-    this.originOf[e] = origin;
-    this.nextAround[e] = e;
-    this.prevAround[e] = e;
-    this.edgeFrom[origin] = e;
-  }
-
-  /** Joins the rings of edges around two origins, or divides one ring in two. */
-  splice(e, f) {
-    const afterE = this.nextAround[e];
-    const afterF = this.nextAround[f];
-    this.nextAround[e] = afterF;
-    this.nextAround[f] = afterE;
-    this.prevAround[afterF] = e;
-    this.prevAround[afterE] = f;
-  }
-
-  /** A new edge from the end of e to the origin of f, which have the same face on their left. */
-  connect(e, f) {
-    const made = this.makeEdge(this.destOf(e), this.originOf[f]);
-    this.splice(made, this.nextOfFace(e));
-    this.splice(made ^ 1, f);
-    return made;
-  }
-
-  deleteEdge(e) {
-    this.removeEnd(e);
-    this.removeEnd(e ^ 1);
-    // No triangle starts with an edge from a vertex to itself.
-    this.originOf[e] = this.originOf[e ^ 1];
-    this.freeEdges.push(e & ~1);
-  }
-
-  removeEnd(e) {
-    this.edgeFrom[this.originOf[e]] = this.nextAround[e];
-    this.splice(e, this.prevAround[e]);
-  }
-
-  // Divide and conquer
 
   /**
    * Triangulates the vertices from `start` to before `end`.
@@ -233,8 +96,6 @@ export class Triangulation {
     }
     return e;
   }
-
-  // Removing a vertex
 
   /** Removes a vertex that is no corner of the canvas; its neighbours stay triangulated. */
   remove(v) {

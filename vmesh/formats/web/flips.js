@@ -4,10 +4,10 @@
  * half-edges 3 t, 3 t + 1 and 3 t + 2.
  */
 
-import { NO_TWIN } from "./delaunay.js";
 import { check } from "./errors.js";
 import { cross, sortedByEnds } from "./geometry.js";
 import { Contexts } from "./rangecoder.js";
+import { NO_TWIN } from "./subdivision.js";
 
 const ANGLES = [3, 7, 12, 18, 26, 38, 60];
 const N_ANGLES = ANGLES.length + 1;

@@ -23,10 +23,8 @@ export function hierarchyOf(triangulation, sides) {
   const isTaken = new Uint8Array(sides.length);
   let left = order.map((_, v) => v);
   while (left.length > 4) {
-    const layer = left.filter((v) => {
-      isTaken[v] = !isCorner(sides[v]) && mayBeTaken(triangulation, v, isTaken);
-      return isTaken[v];
-    });
+    for (const v of left) isTaken[v] = !isCorner(sides[v]) && mayBeTaken(triangulation, v, isTaken);
+    const layer = left.filter((v) => isTaken[v]);
     // The layer that is taken first comes last.
     order.set(layer, left.length - layer.length);
     for (const v of layer) {

@@ -32,8 +32,8 @@ export function readPositions(decoder, nVertices, columns, rows) {
   let nFound = 0;
 
   function room(x, y, across, down) {
-    const width = Math.min(x + 2 ** across, columns) - x;
-    const height = Math.min(y + 2 ** down, rows) - y;
+    const width = Math.min(x + (1 << across), columns) - x;
+    const height = Math.min(y + (1 << down), rows) - y;
     return Math.max(0, width) * Math.max(0, height);
   }
 
@@ -46,8 +46,8 @@ export function readPositions(decoder, nVertices, columns, rows) {
     }
     let x2 = x;
     let y2 = y;
-    if (across >= down) x2 += 2 ** --across;
-    else y2 += 2 ** --down;
+    if (across >= down) x2 += 1 << --across;
+    else y2 += 1 << --down;
     const least = Math.max(0, count - room(x2, y2, across, down));
     const most = Math.min(count, room(x, y, across, down));
     const first = counts.read(count, across + down, least, most);

@@ -34,8 +34,8 @@ const FLIPPED = 2;
  * @property {Uint8Array | Uint16Array} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
  * @property {Int32Array} triangles 3 m: vertex numbers, in canonical order
  * @property {{tag: string, content: Uint8Array}[]} chunks all but the mesh, as they are stored. The
- *   contents of `i` (an ICC profile), `e` (EXIF) and `x` (XMP) are zlib streams, not looked at here:
- *   `DecompressionStream("deflate")` inflates them, and whoever does so should bound the length
+ *   contents of `i` (an ICC profile), `e` (EXIF), `x` (XMP) are zlib streams, not looked at:
+ *   `DecompressionStream("deflate")` inflates them; whoever does so should bound the length
  */
 
 /**
