@@ -1,6 +1,7 @@
 """Files of version 1.0 that are never edited: what they decode to holds for every later reader.
 
-A test of these that fails says that files of users would change. The program is wrong, not the test.
+A test of these that fails says that files of users would change: the program is wrong, not the
+test.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 
 import vmesh
-from tests.codec.damage import file_of, split
+from tests.codec.damage import file_of, split, with_header
 from tests.spec.recipes import (
     DAMAGED,
     MESHES,
@@ -116,6 +116,8 @@ def build() -> dict[str, tuple[bytes, dict[str, Any]]]:
     for about, recipe in valid.items():
         data = vmesh.dumps(recipe())
         add("valid", about, data, **expected(vmesh.loads(data)))
+    later = with_header(VALID, version=0x1F)
+    add("valid", "version 1.15", later, **expected(vmesh.loads(later)))
     for about, (mesh, data, drawn) in bombs().items():
         add("valid", about, data, or_limit=True, **expected(mesh.canonical(), drawn=drawn))
     for about, (code, data) in DAMAGED.items():

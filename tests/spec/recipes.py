@@ -134,6 +134,7 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
     "16 bits, step 1000": lambda: mesh_of(16, 12, 3, n_vertices=60, step=1000, depth=16),
     "16 bits, step 65535": lambda: mesh_of(8, 8, 4, n_vertices=30, step=65535, depth=16),
     "16 bits, a large triangle": lambda: corners_only(9000, 20, [1, 65534, 7, 65535], depth=16),
+    "16 bits, subdivision 8": lambda: mesh_of(700, 700, 1, subdivision=8, depth=16),
     "wide and flat": lambda: mesh_of(300, 1, 3, n_vertices=50, subdivision=2),
     "flipped": lambda: flipped(mesh_of(16, 12, 3, n_vertices=70), 12),
     "flipped, ties": lambda: flipped(grid(8), 20),
