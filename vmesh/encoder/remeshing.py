@@ -40,6 +40,7 @@ _LEAST_SHARE: Final = 0.03
 # vertices); 23.47 and 35.10 with 4, 23.53 and 35.14 with 8 (effort 9).
 _CHANCE: Final = 8.0
 _SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
+_HASTE: Final = 0.6  # what the share falls by where the error has risen
 _PATIENCE: Final = 3  # rounds that are judged together
 # Bits that an edge costs which is not Delaunay.
 _FLIP_BITS: Final = 3.5
@@ -175,10 +176,14 @@ class Remesher:
             report()
             errors.append(self.error)
             share = max(self._effort.share_decay * share, _LEAST_SHARE)
+            if len(errors) <= _PATIENCE:
+                continue
             # The gain of a single round says little: the shares are taken by chance.
-            if len(errors) > _PATIENCE and errors[-1] > errors[-1 - _PATIENCE] * (
-                1.0 - _PATIENCE * self._least_gain
-            ):
+            before = errors[-1 - _PATIENCE]
+            if errors[-1] > before and share > _LEAST_SHARE:
+                # Chance takes more than the rounds bring back.
+                share = max(_HASTE * share, _LEAST_SHARE)
+            elif errors[-1] > before * (1.0 - _PATIENCE * self._least_gain):
                 break
 
     def _exchange(self, n_vertices: int, share: float) -> None:
