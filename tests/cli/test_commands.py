@@ -256,7 +256,7 @@ def test_dump_prints_the_mesh(file: Path) -> None:
     lines = succeed("dump", file, "--mesh").decode().splitlines()
     assert lines[1] == "canvas 600 400"
     vertex = [*mesh.vertices[-1].tolist(), *mesh.levels[-1].tolist()]
-    assert lines[4 + mesh.n_vertices] == " ".join(map(str, vertex))
+    assert lines[5 + mesh.n_vertices] == " ".join(map(str, vertex))
     assert lines[-1] == " ".join(map(str, mesh.triangles[-1].tolist()))
 
 
