@@ -140,8 +140,8 @@ def _write_description(document: etree._IncrementalFileWriter, mesh: Mesh) -> No
 class _Drawing:
     """Writes layers of a mesh. Names of gradients are told apart over the whole document.
 
-    What is inside of a layer is written as text, past lxml: elements made one by one take
-    three times as long, and nothing in that text needs escaping.
+    What is inside of a layer is written as text, past lxml: elements made one by one took
+    twice as long, and nothing in that text needs escaping.
     """
 
     def __init__(
