@@ -47,6 +47,11 @@ class Mode:
 
 
 MODES: Final = (
+    Mode("SVG gradient", ".svg"),
+    Mode("SVG merged", ".svg", {"merge": 50.0}),
+    Mode("SVG exact", ".svg", {"mode": "exact"}),
+    Mode("SVG auto", ".svg", {"mode": "auto"}),
+    Mode("SVG flat", ".svg", {"mode": "flat"}),
     Mode("PDF exact", ".pdf"),
     Mode("PDF cairo", ".pdf", {"backend": "cairo"}),
 )

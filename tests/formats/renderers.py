@@ -5,12 +5,14 @@ from __future__ import annotations
 import io
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+from lxml import etree
 from PIL import Image
 
 from vmesh.formats.picture import flatten
@@ -44,6 +46,36 @@ def draw_with_resvg(path: Path, scale: int) -> Pixels:
     resvg_py = pytest.importorskip("resvg_py", reason="renderer resvg is missing (resvg-py)")
     drawn = resvg_py.svg_to_bytes(svg_path=str(path), zoom=scale)
     return _pixels(Image.open(io.BytesIO(bytes(drawn))))
+
+
+def draw_with_chromium(path: Path, scale: int) -> Pixels:
+    program = need_program("chromium", "chromium")
+    width, height = drawing_size(path)
+    # A headless window keeps a part of its height to itself.
+    window = f"--window-size={max(width, 500)},{height + 200}"
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder, "screenshot.png")
+        options = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", window]
+        options += [f"--force-device-scale-factor={scale}", f"--user-data-dir={folder}/profile"]
+        subprocess.run(
+            [program, *options, f"--screenshot={picture}", path.resolve().as_uri()],
+            check=True,
+            capture_output=True,
+            timeout=300,
+        )
+        return _pixels(Image.open(picture))[: height * scale, : width * scale]
+
+
+def draw_with_cairosvg(path: Path, scale: int) -> Pixels:
+    cairosvg = pytest.importorskip("cairosvg", reason="renderer CairoSVG is missing (CairoSVG)")
+    drawn = cairosvg.svg2png(url=str(path), scale=scale, unsafe=True)
+    return _pixels(Image.open(io.BytesIO(drawn)))
+
+
+def drawing_size(path: Path) -> tuple[int, int]:
+    """Width and height of an SVG document in pixels."""
+    root = etree.parse(path, etree.XMLParser(huge_tree=True)).getroot()
+    return int(root.get("width", "0")), int(root.get("height", "0"))
 
 
 def draw_with_poppler(path: Path, scale: int) -> Pixels:
@@ -81,7 +113,12 @@ def draw_with_ghostscript(path: Path, scale: int) -> Pixels:
     return _pixels(Image.open(io.BytesIO(drawn.stdout)))
 
 
-SVG_RENDERERS: dict[str, Renderer] = {"librsvg": draw_with_librsvg, "resvg": draw_with_resvg}
+SVG_RENDERERS: dict[str, Renderer] = {
+    "librsvg": draw_with_librsvg,
+    "resvg": draw_with_resvg,
+    "chromium": draw_with_chromium,
+    "cairosvg": draw_with_cairosvg,
+}
 PDF_RENDERERS: dict[str, Renderer] = {
     "poppler": draw_with_poppler,
     "mupdf": draw_with_mupdf,

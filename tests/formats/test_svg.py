@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gzip
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from lxml import etree
+from PIL import Image
 
 import vmesh
+from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS, SVG_RENDERERS
 from vmesh.formats.picture import flatten
 from vmesh.metrics import psnr
@@ -17,34 +20,118 @@ from vmesh.metrics import psnr
 SVG = "{http://www.w3.org/2000/svg}"
 
 
+BLENDING = [name for name in SVG_RENDERERS if name != "cairosvg"]  # what knows mix-blend-mode
+
+
 @pytest.fixture(scope="module")
 def detailed(coffee: np.ndarray) -> vmesh.Mesh:
-    return vmesh.encode(coffee, method="blue-noise", vertices=20_000)
+    return vmesh.encode(coffee, method="blue-noise", vertices=5_000)
 
 
 @pytest.fixture(scope="module")
 def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("svg")
-    paths = {mode: folder / f"{mode}.svg" for mode in ("gradient", "flat")}
+    paths = {mode: folder / f"{mode}.svg" for mode in ("gradient", "exact", "auto", "flat")}
     for mode, path in paths.items():
         vmesh.export(detailed, path, mode=mode)
     return paths
 
 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
-@pytest.mark.parametrize(("mode", "least"), [("gradient", 45.0), ("flat", 32.0)])
-def test_a_photograph_of_20000_vertices_is_drawn_closely(
+@pytest.mark.parametrize(("mode", "least"), [("gradient", 43.0), ("flat", 24.0)])
+def test_a_photograph_is_drawn_closely(
     drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, mode: str, least: float
 ) -> None:
     drawn = SVG_RENDERERS[renderer](drawings[mode], 1)
     assert psnr(drawn, vmesh.render(detailed)) >= least
 
 
+@pytest.mark.parametrize("renderer", BLENDING)
+@pytest.mark.parametrize("scale", [1, 4])
+def test_exact_drawings_are_within_a_level_inside_of_triangles(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, scale: int
+) -> None:
+    found = compare(SVG_RENDERERS[renderer](drawings["exact"], scale), detailed, scale)
+    assert found.inside <= 1.0
+    assert found.seams < 0.6
+
+
+@pytest.mark.parametrize("renderer", BLENDING)
+def test_mode_auto_keeps_within_its_tolerance(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str
+) -> None:
+    found = compare(SVG_RENDERERS[renderer](drawings["auto"], 4), detailed, 4)
+    assert found.inside <= 4.0 + 0.5  # and the rounding of our raster
+
+
+@pytest.mark.parametrize("renderer", SVG_RENDERERS)
+def test_merged_regions_take_fewer_bytes_and_stay_close(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "merged.svg"
+    vmesh.export(detailed, path, merge=300.0)
+    assert path.stat().st_size < 0.8 * drawings["gradient"].stat().st_size
+    drawn = SVG_RENDERERS[renderer](path, 1)
+    assert psnr(drawn, vmesh.render(detailed)) >= 40.0
+
+
+def test_what_is_merged_is_drawn_as_one_region_with_its_holes(tmp_path: Path) -> None:
+    # A white square in a black frame: two regions, one of them with a hole.
+    steps = np.arange(4)
+    places = np.array([(x, y) for y in steps for x in steps])
+    corners = [
+        (y * 4 + x, y * 4 + x + 1, y * 4 + x + 5, y * 4 + x + 4) for y in range(3) for x in range(3)
+    ]
+    places = np.concatenate(
+        [places * 10, places[[5, 6, 10, 9]] * 10 + [(1, 1), (-1, 1), (-1, -1), (1, -1)]]
+    )
+    inner = [(16, 17, 18, 19)]
+    ring = [(5, 6, 17, 16), (6, 10, 18, 17), (10, 9, 19, 18), (9, 5, 16, 19)]
+    quads = [quad for i, quad in enumerate(corners) if i != 4] + ring + inner
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    colors = np.zeros((20, 3), dtype=np.uint8)
+    colors[16:] = 255
+    mesh = vmesh.Mesh.from_colors(30, 30, places, triangles, colors)
+    path = tmp_path / "frame.svg"
+    vmesh.export(mesh, path, merge=1.0)
+    outlines = [element.get("d", "") for element in etree.parse(path).iter(f"{SVG}path")]
+    assert len(outlines) < mesh.n_triangles - 10
+    assert any(outline.count("m") == 2 for outline in outlines)
+    drawn = SVG_RENDERERS["librsvg"](path, 1)
+    assert np.abs(drawn.astype(int) - vmesh.render(mesh)).max() <= 1
+
+
+@pytest.mark.parametrize("option", [{"tolerance": 0}, {"merge": -1}, {"merge": 1, "mode": "exact"}])
+def test_options_without_sense_are_refused(
+    detailed: vmesh.Mesh, option: dict[str, Any], tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=r"expected|merged"):
+        vmesh.export(detailed, tmp_path / "a.svg", **option)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_title_of_a_photograph_is_told_and_escaped(tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif[270] = "cup <& saucer>"
+    exif[315] = "A. Painter"
+    metadata = vmesh.Metadata(exif=exif.tobytes().removeprefix(b"Exif\0\0"), icc=b"profile")
+    square = np.array([(0, 0), (9, 0), (9, 9), (0, 9)])
+    colors = np.zeros((4, 1), dtype=np.uint8)
+    triangles = [(0, 1, 2), (0, 2, 3)]
+    mesh = vmesh.Mesh.from_colors(9, 9, square, triangles, colors, metadata=metadata)
+    path = tmp_path / "titled.svg"
+    vmesh.export(mesh, path)
+    root = etree.parse(path).getroot()
+    assert root.findtext(f"{SVG}title") == "cup <& saucer>"
+    assert root.findtext(f"{SVG}desc") == "A. Painter"
+    assert b"profile" in path.read_bytes()
+
+
 def test_gradients_stay_close_at_four_times_the_size(
     drawings: dict[str, Path], detailed: vmesh.Mesh
 ) -> None:
     drawn = SVG_RENDERERS["librsvg"](drawings["gradient"], 4)
-    assert psnr(drawn, vmesh.render(detailed, scale=4)) >= 45.0
+    assert psnr(drawn, vmesh.render(detailed, scale=4)) >= 43.0
 
 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
@@ -65,7 +152,7 @@ def test_no_seams_show_between_triangles(renderer: str, tmp_path: Path) -> None:
         assert np.abs(drawn.astype(int) - mesh.colors[0]).max() <= 1
 
 
-@pytest.mark.parametrize("renderer", SVG_RENDERERS)
+@pytest.mark.parametrize("renderer", BLENDING)  # CairoSVG draws no such mask
 @pytest.mark.parametrize("components", [1, 4])
 def test_grey_and_alpha_are_drawn(
     chelsea: np.ndarray, renderer: str, components: int, tmp_path: Path
@@ -110,9 +197,11 @@ def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[str, Path]) -> N
     assert references == {element.get("id") for element in root.iter(f"{SVG}linearGradient")}
 
 
-def test_every_triangle_has_a_path(detailed: vmesh.Mesh, drawings: dict[str, Path]) -> None:
-    for path in drawings.values():
-        assert len(etree.parse(path).findall(f".//{SVG}path")) == detailed.n_triangles
+@pytest.mark.parametrize("mode", ["gradient", "flat"])
+def test_every_triangle_has_a_path(
+    detailed: vmesh.Mesh, drawings: dict[str, Path], mode: str
+) -> None:
+    assert len(etree.parse(drawings[mode]).findall(f".//{SVG}path")) == detailed.n_triangles
 
 
 def test_compressed_svg_holds_the_same_document(coffee: np.ndarray, tmp_path: Path) -> None:

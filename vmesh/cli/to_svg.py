@@ -18,15 +18,37 @@ from vmesh.formats.registry import FORMATS, format_of
 @click.argument("target", metavar="OUTPUT")
 @click.option(
     "--mode",
-    type=click.Choice(("gradient", "flat")),
+    type=click.Choice(("gradient", "exact", "auto", "flat")),
     default="gradient",
     show_default=True,
-    help="What fills a triangle.",
+    help="What fills a triangle; exact takes three times the bytes of gradient.",
+)
+@click.option(
+    "--tolerance",
+    type=click.FloatRange(0, 255, min_open=True),
+    default=4.0,
+    show_default=True,
+    help="Largest error in mode auto, in levels.",
+)
+@click.option(
+    "--merge",
+    metavar="ERROR",
+    type=click.FloatRange(0),
+    default=0.0,
+    help="In mode gradient, neighbours share one where that adds less squared error, such as 50.",
 )
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, mode: str, quiet: bool, **options: Any) -> None:
+def command(
+    source: str,
+    target: str,
+    mode: str,
+    tolerance: float,
+    merge: float,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
 
     The options of the encoder apply to photographs.
@@ -34,4 +56,7 @@ def command(source: str, target: str, mode: str, quiet: bool, **options: Any) ->
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
-    convert(source, target, wanted, settings, limits, quiet=quiet, mode=mode)
+    if merge and mode != "gradient":
+        raise click.UsageError("--merge is for --mode gradient")
+    chosen = {"mode": mode, "tolerance": tolerance, "merge": merge}
+    convert(source, target, wanted, settings, limits, quiet=quiet, **chosen)

@@ -86,8 +86,8 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
     path : path
         Replaced only when the new file is complete.
     **options
-        For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient" or "flat"; for PDF
-        ``page_width``, such as "210mm", and ``backend``, "native" or "cairo".
+        For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
+        with a ``tolerance`` in levels, or "flat", and ``merge``; for PDF ``page_width``, such as "210mm", and ``backend``, "native" or "cairo".
     """
     target = format_of(path)
     with atomic_output(path) as stream:

@@ -1,36 +1,45 @@
-"""Mesh -> SVG: one linear gradient, or one flat colour, for each triangle.
+"""Mesh -> SVG: for each triangle, or region of several, one flat colour or linear gradient.
 
-SVG knows no triangle gradient. The colour over a triangle is an affine function with values in a
-plane of colours; projected on the principal axis of the three corner colours it becomes a function
-of one direction, which a linear gradient draws exactly. That is the best fit of its kind in the
-mean square over the triangle.
+SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the best
+linear gradient is `svg_regions.py`, its text `svg_gradients.py`. A single channel of colour is drawn
+exactly, so that three layers, one for each channel, joined by `mix-blend-mode: screen`, show the
+mesh as it is.
 
-Seams: neighbouring anti-aliased edges would let the page shine through. Triangles are drawn with
-crisp edges and moved outwards by a tenth of a pixel, on a backdrop in the mean colour; alpha is
-drawn as a mask of the same make, so that overlaps do not show.
+Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the same
+to the last digit on both sides (`svg_outlines.py`). Alpha is drawn as a mask of the same make.
 """
 
 from __future__ import annotations
 
 import gzip
 from collections.abc import Iterator
-from typing import BinaryIO, Final, Literal, get_args
+from itertools import count, islice, product
+from string import ascii_letters, digits
+from typing import Any, BinaryIO, Final, get_args
 
 import numpy as np
 from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
+from vmesh.formats.pdf_metadata import Description
 from vmesh.formats.raster import scaled_positions
+from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
+from vmesh.formats.svg_layers import Layer, Mode, layers_of
+from vmesh.formats.svg_outlines import outlines_of
+from vmesh.formats.svg_regions import Moments
 from vmesh.kernels.scanline import SUBPIXEL, fill, label, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
-Mode = Literal["gradient", "flat"]
-
 _NAMESPACE: Final = "http://www.w3.org/2000/svg"
-_OUTSET: Final = 0.1  # pixels
-_LONGEST_MITER: Final = 0.4  # pixels that a sharp corner may move
-_SMALLEST_RANGE: Final = 0.5  # levels between the ends of a gradient that is worth one
+_MASK: Final = "_alpha"  # names of gradients have no underscore
+# Pixels by which flat triangles move up and left. A centre that lies on an edge then falls to its
+# right or below it, as in our raster, whatever a program's own rule; gradients would be shifted too.
+_FLAT_SHIFT: Final = 1 / 16
+_CHUNK: Final = 1 << 12  # elements that are written at a time
+_GRADIENT: Final = '<linearGradient id="{}"{}</linearGradient>'
+_PATH: Final = '<path fill="{}" d="{}"/>'
+_ICC_NOTE: Final = " Colours are numbers in the picture's own profile, which SVG has no place for. "
 
 
 def write_svg(
@@ -38,6 +47,8 @@ def write_svg(
     stream: BinaryIO | gzip.GzipFile,
     *,
     mode: Mode = "gradient",
+    tolerance: float = 4.0,
+    merge: float = 0.0,
     limits: Limits = DEFAULT_LIMITS,
 ) -> None:
     """Write a mesh as an SVG document.
@@ -46,41 +57,63 @@ def write_svg(
     ----------
     mesh : Mesh
     stream : binary file
-    mode : {"gradient", "flat"}
-        What fills a triangle: its best linear gradient or its mean colour.
+    mode : {"gradient", "exact", "auto", "flat"}
+        What fills a triangle: its best linear gradient, three gradients in layers that are
+        screened, the cheapest of these that keeps within `tolerance`, or one colour.
+    tolerance : float
+        Largest error of a channel in mode "auto", in levels; above 0.
+    merge : float
+        In mode "gradient", neighbours share one gradient where that adds less than this to the
+        squared error, summed over pixels and channels.
     limits : Limits
         What the mesh may ask for; the colours of flat triangles come from a raster.
+
+    Raises
+    ------
+    ValueError
+        If an option is none of these, or has no meaning in the mode.
     """
     limits.check_vertices(mesh.n_vertices)
-    if mode not in get_args(Mode):
-        raise ValueError(f"expected mode to be one of {', '.join(get_args(Mode))}, got {mode!r}")
+    _check_options(mode, tolerance, merge)
+    if mode == "flat":
+        _check_work(mesh, limits)
+    drawing = _Drawing(mesh, stream, mode, tolerance, merge)
     size = {"width": str(mesh.width), "height": str(mesh.height)}
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
     colors = mesh.plain_colors
-    if mode == "flat":
-        _check_work(mesh, limits)
-    outset = _outset(mesh)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
         document.element("svg", root, nsmap={None: _NAMESPACE}),
     ):
-        document.write("\n")
-        group = {"shape-rendering": "crispEdges"}
+        _write_description(document, mesh)
         if mesh.n_components == 4:
             frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **size}
-            with document.element("mask", {"id": "alpha", **frame}):
-                _write_layer(document, mesh, colors[:, 3:], outset, mode, "m", group)
-            group["mask"] = "url(#alpha)"
-        _write_layer(document, mesh, colors[:, :3], outset, mode, "g", group)
+            with document.element("mask", {"id": _MASK, **frame}):
+                drawing.write(document, colors[:, [3, 3, 3]])
+            with document.element("g", {"mask": f"url(#{_MASK})"}):
+                drawing.write(document, colors[:, :3])
+        else:
+            drawing.write(document, colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors)
 
 
 def write_svgz(
-    mesh: Mesh, stream: BinaryIO, *, mode: Mode = "gradient", limits: Limits = DEFAULT_LIMITS
+    mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS, **options: Any
 ) -> None:
     """Write a mesh as a compressed SVG document; as :func:`write_svg`."""
     # No name and no time in the gzip header: the same mesh gives the same bytes.
     with gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as compressed:
-        write_svg(mesh, compressed, mode=mode, limits=limits)
+        write_svg(mesh, compressed, limits=limits, **options)
+
+
+def _check_options(mode: str, tolerance: float, merge: float) -> None:
+    if mode not in get_args(Mode):
+        raise ValueError(f"expected mode to be one of {', '.join(get_args(Mode))}, got {mode!r}")
+    if not 0 < tolerance <= 255:
+        raise ValueError(f"expected a tolerance above 0, of at most 255 levels, got {tolerance}")
+    if not 0 <= merge < np.inf:
+        raise ValueError(f"expected a finite error of 0 or more to merge by, got {merge}")
+    if merge and mode != "gradient":
+        raise ValueError(f"regions are merged in mode gradient only, got mode {mode}")
 
 
 def _check_work(mesh: Mesh, limits: Limits) -> None:
@@ -91,146 +124,101 @@ def _check_work(mesh: Mesh, limits: Limits) -> None:
     limits.check_work(2 * n_rows, 2 * mesh.width * mesh.height)
 
 
-def _write_layer(
-    document: etree._IncrementalFileWriter,
-    mesh: Mesh,
-    colors: UInt8Array,
-    outset: Float64Array,
-    mode: Mode,
-    prefix: str,
-    group: dict[str, str],
-) -> None:
-    """Write all triangles in a group, with colours of shape (n, 1) or (n, 3)."""
-    rgb = np.repeat(colors, 3, axis=1) if colors.shape[1] == 1 else colors
-    corners = rgb.astype(np.float64)[mesh.triangles]
-    fills = _hex_colors(_flat_colors(mesh, rgb, outset) if mode == "flat" else corners.mean(axis=1))
-    with document.element("g", group):
-        document.write("\n")
-        if mesh.covers_canvas:
-            whole = {"width": str(mesh.width), "height": str(mesh.height)}
-            mean = _hex_colors(_mean_color(mesh, corners)[None])[0]
-            document.write(etree.Element("rect", {**whole, "fill": mean}), "\n")
-        if mode == "gradient":
-            with document.element("defs"):
-                for t, element in _gradients(mesh, corners, prefix):
-                    fills[t] = f"url(#{element.get('id')})"
-                    document.write(element, "\n")
-        for outline, paint in zip(_path_data(outset), fills, strict=True):
-            document.write(etree.Element("path", {"fill": paint, "d": outline}), "\n")
+def _write_description(document: etree._IncrementalFileWriter, mesh: Mesh) -> None:
+    """Write what the picture's EXIF says of it."""
+    known = Description.of(mesh.metadata)
+    texts = {"title": known.title, "desc": ", ".join(filter(None, (known.author, known.rights)))}
+    for name, text in texts.items():
+        if text:
+            element = etree.Element(name)
+            element.text = text
+            document.write(element)
+    if mesh.metadata.icc:
+        document.write(etree.Comment(_ICC_NOTE))
 
 
-def _gradients(
-    mesh: Mesh, corners: Float64Array, prefix: str
-) -> Iterator[tuple[int, etree._Element]]:
-    """Triangle and gradient element of each triangle whose colour varies enough to need one.
+class _Drawing:
+    """Writes layers of a mesh. Names of gradients are told apart over the whole document.
 
-    `corners` holds the corner colours, shape (m, 3, 3).
+    What is inside of a layer is written as text, past lxml: elements made one by one took
+    twice as long, and nothing in that text needs escaping.
     """
-    middle = corners.mean(axis=1)
-    deviations = corners - middle[:, None]
-    _, axes = np.linalg.eigh(np.einsum("tij,tik->tjk", deviations, deviations))
-    axis = axes[:, :, -1]
-    values = np.einsum("tij,tj->ti", deviations, axis)
-    low, high = values.min(axis=1), values.max(axis=1)
-    points = mesh.points[mesh.triangles]
-    slope = _slopes(points, values)
-    steepness = (slope * slope).sum(axis=1)
-    worth = np.flatnonzero((high - low >= _SMALLEST_RANGE) & (steepness > 0))
-    center = points.mean(axis=1)[worth]
-    along = slope[worth] / steepness[worth, None]
-    starts, ends = low[worth, None], high[worth, None]
-    lines = np.concatenate([center + along * starts, center + along * ends], axis=1)
-    start_colors = _hex_colors(middle[worth] + axis[worth] * starts)
-    end_colors = _hex_colors(middle[worth] + axis[worth] * ends)
-    for i, (t, line) in enumerate(zip(worth.tolist(), lines.tolist(), strict=True)):
-        ends_at = {name: _number(x) for name, x in zip(("x1", "y1", "x2", "y2"), line, strict=True)}
-        element = etree.Element(
-            "linearGradient", {"id": f"{prefix}{t}", "gradientUnits": "userSpaceOnUse", **ends_at}
-        )
-        etree.SubElement(element, "stop", {"stop-color": start_colors[i]})
-        etree.SubElement(element, "stop", {"offset": "1", "stop-color": end_colors[i]})
-        yield t, element
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        stream: BinaryIO | gzip.GzipFile,
+        mode: Mode,
+        tolerance: float,
+        merge: float,
+    ) -> None:
+        self._mesh = mesh
+        self._stream = stream
+        self._options = (mode, tolerance, merge)
+        self._names = _names()
+
+    def write(self, document: etree._IncrementalFileWriter, rgb: UInt8Array) -> None:
+        """Write a group that shows colours of shape (n, 3)."""
+        mesh, mode = self._mesh, self._options[0]
+        moments = Moments.of_triangles(mesh, rgb.astype(np.float64))
+        if mode == "flat":
+            moments.means[:, 2:] = _shown_means(mesh, rgb, moments.means[:, 2:])
+        moves = [f"translate({-_FLAT_SHIFT} {-_FLAT_SHIFT})"] if mode == "flat" else []
+        moves += [f"scale({1 / mesh.unit:.9g})"] if mesh.unit > 1 else []
+        group = {"shape-rendering": "crispEdges"}
+        if moves:
+            group["transform"] = " ".join(moves)
+        with document.element("g", group):
+            if mesh.covers_canvas:
+                whole = {name: str(getattr(mesh, name) * mesh.unit) for name in ("width", "height")}
+                mean = hex_colors(np.average(moments.means[:, 2:], 0, moments.weights)[None])[0]
+                document.write(etree.Element("rect", {**whole, "fill": mean}))
+            first, *screened = layers_of(mesh, moments, *self._options)
+            self._write_layer(document, first)
+            for layer in screened:
+                with document.element("g", {"style": "mix-blend-mode:screen"}):
+                    self._write_layer(document, layer)
+
+    def _write_layer(self, document: etree._IncrementalFileWriter, layer: Layer) -> None:
+        """Write the gradients of a layer, and its paths."""
+        outlines = outlines_of(self._mesh, layer.regions)
+        paints = hex_colors(layer.fits.middles)
+        worth, bodies = gradient_bodies(layer, outlines, self._mesh.unit)
+        names = list(islice(self._names, len(worth)))
+        for region, name in zip(worth.tolist(), names, strict=True):
+            paints[region] = f"url(#{name})"
+        if bodies:
+            with document.element("defs"):
+                self._write_text(document, map(_GRADIENT.format, names, bodies))
+        self._write_text(document, map(_PATH.format, paints, outlines.path_data()))
+
+    def _write_text(self, document: etree._IncrementalFileWriter, elements: Iterator[str]) -> None:
+        """Write elements as text, many to a line."""
+        document.flush()
+        while chunk := "".join(islice(elements, _CHUNK)):
+            self._stream.write(chunk.encode("ascii") + b"\n")
 
 
-def _slopes(points: Float64Array, values: Float64Array) -> Float64Array:
-    """Gradient of the affine function with three corner values, per triangle; shape (m, 2)."""
-    x1, y1 = (points[:, 1] - points[:, 0]).T
-    x2, y2 = (points[:, 2] - points[:, 0]).T
-    first, second = (values[:, 1:] - values[:, :1]).T
-    det = x1 * y2 - x2 * y1
-    numerators = np.stack([first * y2 - second * y1, second * x1 - first * x2], axis=1)
-    slopes: Float64Array = numerators / det[:, None]
-    return slopes
+def _names() -> Iterator[str]:
+    """Names that XML allows, shorter ones first."""
+    for length in count():
+        for letters in product(ascii_letters, *[ascii_letters + digits] * length):
+            yield "".join(letters)
 
 
-def _outset(mesh: Mesh) -> Float64Array:
-    """Corners of the triangles, moved outwards; shape (m, 3, 2), in pixels."""
-    points = mesh.points[mesh.triangles]
-    sides = np.roll(points, -1, axis=1) - points
-    lengths = np.linalg.norm(sides, axis=2, keepdims=True)
-    # In axes with y down, the outside of a positive triangle is on the left of its sides.
-    outward = np.stack([sides[..., 1], -sides[..., 0]], axis=2) / lengths
-    before = np.roll(outward, 1, axis=1)
-    cosine = (outward * before).sum(axis=2, keepdims=True)
-    miters = _OUTSET * (outward + before) / np.maximum(1.0 + cosine, 1e-6)
-    reach = np.linalg.norm(miters, axis=2, keepdims=True)
-    miters *= np.minimum(1.0, _LONGEST_MITER / np.maximum(reach, 1e-9))
-    moved: Float64Array = np.round(points + miters, 2)
-    return moved
-
-
-def _path_data(outset: Float64Array) -> list[str]:
-    """Path data of triangles of shape (m, 3, 2)."""
-    return [
-        f"M{_number(ax)},{_number(ay)}L{_number(bx)},{_number(by)} {_number(cx)},{_number(cy)}z"
-        for ax, ay, bx, by, cx, cy in outset.reshape(-1, 6).tolist()
-    ]
-
-
-def _flat_colors(mesh: Mesh, rgb: UInt8Array, outset: Float64Array) -> Float64Array:
+def _shown_means(mesh: Mesh, rgb: UInt8Array, means: Float64Array) -> Float64Array:
     """Mean of the pixels that show each triangle at the canvas's own size, shape (m, 3).
 
-    Crisp edges give a pixel to the last triangle that holds its centre, so for small triangles
-    this is closer than the mean of the corners: by some 3 dB at 20,000 vertices on photographs.
+    Crisp edges give a pixel to the triangle that holds its centre, so for small triangles this is
+    closer than the mean over the triangle: by some 3 dB at 20,000 vertices on photographs. Those
+    without a pixel keep that of `means`.
     """
     positions = scaled_positions(mesh, (mesh.width, mesh.height))
     raster = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)
-    fill(positions, mesh.triangles, rgb, raster)
-    corners = np.rint(outset.reshape(-1, 2) * SUBPIXEL).astype(np.int64)
-    labels = np.zeros((mesh.height, mesh.width), dtype=np.int32)
-    own_corners = np.arange(3 * mesh.n_triangles, dtype=np.int32).reshape(-1, 3)
-    label(corners, own_corners, labels)
-    owners = labels.ravel()
-    counts = np.bincount(owners, minlength=mesh.n_triangles)[:, None]
-    sums = [
-        np.bincount(owners, raster[:, :, z].ravel(), minlength=mesh.n_triangles) for z in range(3)
-    ]
-    corner_means = rgb[mesh.triangles].mean(axis=1)
-    means = np.stack(sums, axis=1) / np.maximum(counts, 1)
-    return np.where(counts > 0, means, corner_means)
-
-
-def _mean_color(mesh: Mesh, corners: Float64Array) -> Float64Array:
-    """Mean colour of the picture, shape (3,)."""
-    areas = mesh.doubled_areas().astype(np.float64)
-    mean: Float64Array = areas @ corners.mean(axis=1) / areas.sum()
-    return mean
-
-
-def _hex_colors(colors: Float64Array) -> list[str]:
-    """SVG notation of colours of shape (n, 3), short where it can be."""
-    levels = np.rint(np.clip(colors, 0, 255)).astype(np.uint8)
-    texts = levels.tobytes().hex()
-    return [_short(texts[i : i + 6]) for i in range(0, len(texts), 6)]
-
-
-def _short(digits: str) -> str:
-    if digits[::2] == digits[1::2]:
-        return f"#{digits[::2]}"
-    return f"#{digits}"
-
-
-def _number(value: float) -> str:
-    """Shortest text of a coordinate, to a hundredth of a pixel."""
-    text = f"{value:.2f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    fill(positions, mesh.triangles, np.ascontiguousarray(rgb), raster)
+    labels = np.full((mesh.height, mesh.width), mesh.n_triangles, dtype=np.int32)
+    label(positions - round(_FLAT_SHIFT * SUBPIXEL), mesh.triangles, labels)
+    owners, n = labels.ravel(), mesh.n_triangles
+    counts = np.bincount(owners, minlength=n)[:n, None]
+    sums = [np.bincount(owners, raster[:, :, z].ravel(), minlength=n)[:n] for z in range(3)]
+    return np.where(counts > 0, np.stack(sums, axis=1) / np.maximum(counts, 1), means)

@@ -1,0 +1,105 @@
+"""Layers of a drawing: what is painted on each other, and what with.
+
+A layer paints regions, each with one gradient or flat colour. Where one gradient will not do, the
+first layer shows the red of a triangle and two more, which are *screened* onto it, its green and its
+blue: a single channel is exact, and the screen of colours that have no channel in common is their sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+
+from vmesh.arrays import Float64Array, Int64Array
+from vmesh.formats.svg_regions import Moments, Slopes, merge
+from vmesh.mesh import Mesh
+
+Mode = Literal["gradient", "exact", "auto", "flat"]
+
+_SMALLEST_RANGE: Final = 0.5  # levels: less than that a flat colour shows as well
+_ROUNDING: Final = 0.5  # levels that rounded ends of gradients may add, and where they are exact
+_EXACT_ROUNDING: Final = 0.1
+_FLAT_SHARE: Final = 0.25  # of the tolerance, for flat colours
+_RESERVE: Final = 1.0  # levels of the tolerance that are left to the rounding of colours and ends
+_CURVE_BITS: Final = 17  # of a place in half pixels
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """Regions, and what is painted there.
+
+    Parameters
+    ----------
+    regions : ndarray
+        Shape (m,), int64: the region of each triangle, -1 where the layer is empty.
+    fits : Slopes
+        Of the regions.
+    smallest_range : float
+        Levels between the ends of a gradient; below it a flat colour will do.
+    rounding : float
+        Levels by which rounded ends may change a colour.
+    """
+
+    regions: Int64Array
+    fits: Slopes
+    smallest_range: float
+    rounding: float
+
+
+def layers_of(
+    mesh: Mesh, moments: Moments, mode: Mode, tolerance: float, largest: float
+) -> list[Layer]:
+    """Layers of a mesh in the order of painting; the second and third are screened.
+
+    `moments` are those of the colours of its triangles; `tolerance` is for mode "auto", `largest`
+    the squared error that a merger may add.
+    """
+    split = np.zeros(mesh.n_triangles, dtype=bool)
+    smallest, rounding = _SMALLEST_RANGE, _ROUNDING
+    regions = np.arange(mesh.n_triangles)
+    if mode == "flat":
+        smallest = np.inf
+    elif mode == "gradient":
+        regions, moments = merge(mesh, moments, largest)
+        split = np.zeros(len(moments.weights), dtype=bool)
+    elif mode == "exact":
+        split[:] = mesh.n_components > 1
+        rounding = _EXACT_ROUNDING
+    else:
+        # A flat colour leaves out both what a gradient shows and what it leaves.
+        smallest = max(smallest, _FLAT_SHARE * tolerance)
+        split = _farthest(mesh, moments) > tolerance - smallest - _RESERVE
+    order = _morton_order(moments.means[:, :2])
+    # Pixels on an edge go to what is painted last. Those that are split come after all others, so
+    # that they win them on the first layer as they do on those that only they are on.
+    order = order[np.argsort(split[order], kind="stable")]
+    regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
+    layers = [Layer(regions, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
+    if split.any():
+        numbers = np.where(split, np.cumsum(split) - 1, -1)[regions]
+        parts = moments.take(np.flatnonzero(split))
+        for channel in (1, 2):
+            fits = Slopes.fitted(parts.of_channel(channel, np.ones(len(parts.weights), dtype=bool)))
+            layers.append(Layer(numbers, fits, smallest, rounding))
+    return layers
+
+
+def _farthest(mesh: Mesh, moments: Moments) -> Float64Array:
+    """Largest error in any channel that each triangle's gradient leaves, shape (m,), in levels."""
+    fits = Slopes.fitted(moments)
+    maps = moments.maps()
+    apart = mesh.points[mesh.triangles] - fits.centers[:, None]
+    rank_one = fits.slopes[:, :, None] * fits.axes[:, None]
+    errors: Float64Array = np.abs(apart @ (maps - rank_one)).max(axis=(1, 2))
+    return errors
+
+
+def _morton_order(points: Float64Array) -> Int64Array:
+    """Order of points along a Z-curve, by half pixels: what is near in it compresses well."""
+    x, y = np.rint(2 * points.T).astype(np.int64)
+    keys = np.zeros_like(x)
+    for bit in range(_CURVE_BITS):
+        keys |= ((x >> bit & 1) << 2 * bit) | ((y >> bit & 1) << 2 * bit + 1)
+    return np.argsort(keys, kind="stable")

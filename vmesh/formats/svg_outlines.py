@@ -1,0 +1,110 @@
+"""Outlines of regions as path data, in the mesh's own lattice units.
+
+::
+
+      ______________        An outline is a loop of half-edges with the region on their right
+     |  region     /        (y points down). Nothing is rounded, so that neighbours have the very
+     |      ______/         same side: crisp edges then leave no pixel between them, and give each
+     |_____|                to the region that holds its centre.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vmesh.arrays import BoolArray, Int64Array
+from vmesh.kernels.half_edges import find_twins
+from vmesh.mesh import Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Outlines:
+    """Loops of corners, region after region.
+
+    Parameters
+    ----------
+    corners : ndarray
+        Shape (k, 2), int64, in lattice units.
+    loops : ndarray
+        Shape (l,), int64: where each loop starts in `corners`.
+    regions : ndarray
+        Shape (l,), int64: the region of each loop, ascending from 0 without gaps.
+    """
+
+    corners: Int64Array
+    loops: Int64Array
+    regions: Int64Array
+
+    @property
+    def starts(self) -> Int64Array:
+        """Where each region starts in `corners`, shape (n,)."""
+        return self.loops[np.diff(self.regions, prepend=-1) > 0]
+
+    @property
+    def owners(self) -> Int64Array:
+        """The region of each corner, shape (k,)."""
+        return np.repeat(self.regions, np.diff(self.loops, append=len(self.corners)))
+
+    def boxes(self) -> Int64Array:
+        """Left, top, width and height of each region, shape (n, 4), in lattice units."""
+        low = np.minimum.reduceat(self.corners, self.starts)
+        extent = np.maximum.reduceat(self.corners, self.starts) - low
+        boxes: Int64Array = np.concatenate([low, extent], axis=1)
+        return boxes
+
+    def path_data(self) -> list[str]:
+        """Path data of each region; a loop is relative to the one before, a corner too."""
+        steps = np.diff(self.corners, axis=0, prepend=0)
+        starts = self.corners[self.loops]
+        is_first = np.diff(self.regions, prepend=-1) > 0
+        steps[self.loops] = starts - np.where(is_first[:, None], 0, np.roll(starts, 1, axis=0))
+        numbers = steps.ravel().tolist()
+        cuts = [*(2 * self.loops).tolist(), len(numbers)]
+        texts = [""] * len(self.starts)
+        for i, region in enumerate(self.regions.tolist()):
+            coordinates = " ".join(map(str, numbers[cuts[i] : cuts[i + 1]]))
+            texts[region] += f"m{coordinates.replace(' -', '-')}z"
+        return texts
+
+
+def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
+    """Outlines of the regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
+    twins = find_twins(mesh.triangles, mesh.n_vertices).astype(np.int64)
+    own = np.repeat(regions, 3)
+    across = np.where(twins >= 0, own[twins], -1)
+    following = _following(twins, (across == own) & (own >= 0))
+    outer = np.flatnonzero((across != own) & (own >= 0))
+    ordered, loops = _walked(outer[np.argsort(own[outer], kind="stable")], following)
+    corners = mesh.vertices.astype(np.int64)[mesh.triangles.ravel()[ordered]]
+    return Outlines(corners, loops, own[ordered[loops]])
+
+
+def _following(twins: Int64Array, inner: BoolArray) -> Int64Array:
+    """The half-edge of a region's outline that follows each of them, shape (3 m,)."""
+    half_edges = np.arange(len(twins))
+    successors = np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
+    following = successors.copy()
+    # Turn about the corner, from triangle to triangle, until the region ends.
+    turning = np.flatnonzero(~inner)
+    while len(turning := turning[inner[following[turning]]]):
+        following[turning] = successors[twins[following[turning]]]
+    return following
+
+
+def _walked(outer: Int64Array, following: Int64Array) -> tuple[Int64Array, Int64Array]:
+    """Half-edges of outlines in turn, and where loops start among them."""
+    ordered: list[int] = []
+    loops: list[int] = []
+    after = following.tolist()
+    seen = bytearray(len(after))
+    for start in outer.tolist():
+        edge = start
+        if not seen[edge]:
+            loops.append(len(ordered))
+        while not seen[edge]:
+            seen[edge] = 1
+            ordered.append(edge)
+            edge = after[edge]
+    return np.array(ordered, dtype=np.int64), np.array(loops, dtype=np.int64)
