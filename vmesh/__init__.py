@@ -8,6 +8,7 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG ... by the file's name
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
+    vmesh.register()                       Image.open and Image.save of Pillow know .vmesh
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
+    from vmesh.pillow_plugin import register
 
 __version__ = "0.1.0"
 
@@ -55,6 +57,7 @@ __all__ = [
     "load",
     "loads",
     "paint_mesh",
+    "register",
     "render",
 ]
 
@@ -76,6 +79,7 @@ _HOMES: Final = {
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",
     "paint_mesh": "vmesh.formats.cairo_pdf",
+    "register": "vmesh.pillow_plugin",
     "render": "vmesh.formats.raster",
 }
 

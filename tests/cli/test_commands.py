@@ -151,6 +151,7 @@ def test_decode_transforms(file: Path, tmp_path: Path) -> None:
         ("to-svg", "svg", b"<svg"),
         ("to-svg", "svgz", b"\x1f\x8b"),
         ("to-pdf", "pdf", b"%PDF"),
+        ("to-html", "html", b"<!doctype html>"),
     ],
 )
 def test_vector_commands_take_meshes_and_photographs(
@@ -161,6 +162,14 @@ def test_vector_commands_take_meshes_and_photographs(
     succeed(command, COFFEE, from_photograph, "--vertices", "2000")
     assert from_mesh.read_bytes().startswith(start)
     assert from_mesh.read_bytes() == from_photograph.read_bytes()
+
+
+def test_the_script_of_the_element_is_written_alone(file: Path, tmp_path: Path) -> None:
+    script = tmp_path / "vmesh-image.js"
+    succeed("to-html", "--element", script)
+    assert b'customElements.define("vmesh-image"' in script.read_bytes()
+    assert "takes no INPUT" in fail(2, "to-html", file, "--element", script)
+    assert "OUTPUT.html" in fail(2, "to-html", file)
 
 
 def test_a_page_has_the_width_and_the_backend_that_are_asked_for(

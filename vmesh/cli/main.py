@@ -17,6 +17,7 @@ COMMANDS: Final = {
     "decode": ("decode", "Turn a .vmesh file into pixels at any scale."),
     "to-svg": ("to_svg", "Turn a .vmesh file or a photograph into SVG."),
     "to-pdf": ("to_pdf", "Turn a .vmesh file or a photograph into PDF."),
+    "to-html": ("to_html", "Turn a .vmesh file or a photograph into a page for browsers."),
     "info": ("info", "Say what is in a .vmesh file."),
     "validate": ("validate", "Say all that is wrong with a .vmesh file."),
     "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),
@@ -49,7 +50,7 @@ class LazyGroup(click.Group):
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="vmesh")
 def cli() -> None:
-    """Photographs as triangle meshes: encode, store, and turn into pixels, SVG and PDF.
+    """Photographs as triangle meshes: encode, store, and turn into pixels, SVG, PDF and HTML.
 
     A file named - is standard input or output.
     """

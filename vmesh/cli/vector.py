@@ -1,4 +1,4 @@
-"""What ``vmesh to-svg`` and ``vmesh to-pdf`` have in common."""
+"""What ``vmesh to-svg``, ``to-pdf`` and ``to-html`` have in common."""
 
 from __future__ import annotations
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import warnings
-import zlib
 
 from vmesh.codec import layout
 from vmesh.codec.layout import Chunk, Header
+from vmesh.codec.metadata import read_metadata
 from vmesh.codec.payloads import decode_mesh
 from vmesh.errors import FormatError, PartialFileWarning
 from vmesh.limits import DEFAULT_LIMITS, Limits
-from vmesh.mesh import Mesh, Metadata
+from vmesh.mesh import Mesh
 
 
 def loads(
@@ -84,42 +84,6 @@ def read_chunks(
     limits.check_vertices(header.n_vertices)
     *ancillary, coded = chunks
     limits.check_density(header.n_vertices, len(coded.content))
-    metadata = _read_metadata(ancillary, limits, complain)
+    metadata = read_metadata(ancillary, limits, complain)
     mesh, sizes = decode_mesh(coded, header)
     return mesh.replaced(metadata=metadata), sizes
-
-
-def _read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain) -> Metadata:
-    """ICC profile, EXIF, XMP and the ancillary chunks that are not known."""
-    names = {tag: name for name, tag in layout.METADATA_TAGS.items()}
-    known: dict[str, bytes] = {}
-    unknown = []
-    total = 0
-    for chunk in chunks:
-        if chunk.tag in names:
-            try:
-                known[names[chunk.tag]] = block = _inflate(chunk, limits)
-            except FormatError as error:
-                complain(error)
-                continue
-            total += len(block)
-        else:
-            unknown.append((chunk.tag, chunk.content))
-            total += len(chunk.content)
-        limits.check_metadata(total)
-    return Metadata(**known, unknown=tuple(unknown))
-
-
-def _inflate(chunk: Chunk, limits: Limits) -> bytes:
-    """Content of a known metadata chunk, inflated to no more than the limit."""
-    inflater = zlib.decompressobj()
-    try:
-        block = inflater.decompress(chunk.content, limits.max_metadata + 1)
-    except zlib.error as error:
-        raise FormatError("metadata", f"zlib: {error}", chunk.content_offset) from None
-    limits.check_metadata(len(block))
-    if not inflater.eof or inflater.unused_data or not block:
-        raise FormatError(
-            "metadata", "expected one complete zlib stream with content", chunk.content_offset
-        )
-    return block

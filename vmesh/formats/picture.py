@@ -70,14 +70,25 @@ def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Pictur
             )
         try:
             image.load()
-            upright = _upright(image)
-            array = _array_of(upright)
+            return picture_of(image)
         except MemoryError:
             raise
         except Exception as error:
             # The decoders of damaged images raise errors of many kinds.
             raise ImageError(f"the image is damaged: {error}") from None
-        return Picture(array, _metadata_of(upright, array))
+
+
+def picture_of(image: Image.Image) -> Picture:
+    """What an image of Pillow holds: its EXIF orientation applied, alpha and palette resolved.
+
+    Raises
+    ------
+    ValueError
+        If pixels of its mode have no colours, as those of "F".
+    """
+    upright = _upright(image)
+    array = _array_of(upright)
+    return Picture(array, _metadata_of(upright, array))
 
 
 def _open(stream: BinaryIO) -> Image.Image:

@@ -45,6 +45,8 @@ FORMATS: Final = {
     ".svg": Format("vmesh.formats.svg", "write_svg"),
     ".svgz": Format("vmesh.formats.svg", "write_svgz"),
     ".pdf": Format("vmesh.formats.pdf", "write_pdf"),
+    ".html": Format("vmesh.formats.html", "write_html"),
+    ".htm": Format("vmesh.formats.html", "write_html"),
 }
 
 RASTER_SUFFIXES: Final = tuple(suffix for suffix, f in FORMATS.items() if f.is_raster)
@@ -78,7 +80,7 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
 
 
 def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
-    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG or PDF, by the ending of the file's name.
+    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG, PDF or HTML, by the ending of the file's name.
 
     Parameters
     ----------

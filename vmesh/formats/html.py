@@ -1,0 +1,82 @@
+"""Mesh -> a page that shows it: the decoder, a viewer and the ``.vmesh`` file in one HTML file.
+
+The page loads nothing, and says so to the browser (its content security policy), so that it works
+from a disk, in an archive and without a network.
+"""
+
+from __future__ import annotations
+
+import base64
+from html import escape
+from string import Template
+from typing import BinaryIO, Final
+
+from lxml import etree
+
+from vmesh.codec.writer import dumps
+from vmesh.formats.bundle import WEB, bundle
+from vmesh.formats.pdf_metadata import Description
+from vmesh.limits import DEFAULT_LIMITS, Limits
+from vmesh.mesh import Mesh, Metadata
+
+_DC: Final = "{http://purl.org/dc/elements/1.1/}"
+_ITEM: Final = "{http://www.w3.org/1999/02/22-rdf-syntax-ns#}li"
+
+
+def write_html(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> None:
+    """Write a mesh as a page for browsers, with all that it takes to show it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        One that a file may hold; its metadata are in the page as they are in the file.
+    stream : binary file
+    limits : Limits
+        What the mesh may ask for.
+
+    Raises
+    ------
+    ValueError
+        As :func:`vmesh.dumps`.
+    """
+    limits.check_vertices(mesh.n_vertices)
+    stream.write(page_of(dumps(mesh), name_of(mesh)).encode())
+
+
+def page_of(data: bytes, name: str) -> str:
+    """The page that shows the bytes of a ``.vmesh`` file, or says what is wrong with them."""
+    viewer = WEB / "viewer"
+    return Template((viewer / "page.html").read_text("utf-8")).substitute(
+        name=escape(name),
+        style=(viewer / "page.css").read_text("utf-8"),
+        data=base64.b64encode(data).decode(),
+        script=bundle("viewer/page.js"),
+    )
+
+
+def element_script() -> str:
+    """The script of the element ``<vmesh-image>``, one file without dependencies."""
+    return bundle("viewer/element.js")
+
+
+def name_of(mesh: Mesh) -> str:
+    """What a reader who does not see the picture is told: its title, or its size."""
+    return (
+        _xmp_title(mesh.metadata)
+        or Description.of(mesh.metadata).title
+        or f"Picture of {mesh.width} × {mesh.height} pixels"
+    )
+
+
+def _xmp_title(metadata: Metadata) -> str:
+    """Title or description in the XMP packet, empty if there is none or it makes no sense."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True)
+    try:
+        root = etree.fromstring(metadata.xmp, parser)
+    except etree.XMLSyntaxError:  # also of an empty packet
+        return ""
+    for kind in ("title", "description"):
+        for item in root.iterfind(f".//{_DC}{kind}//{_ITEM}"):
+            if title := " ".join((item.text or "").split()):
+                return title
+    return ""

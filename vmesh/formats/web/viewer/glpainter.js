@@ -1,0 +1,173 @@
+/** Draws meshes with WebGL 2, whose graphics hardware interpolates the colours of the corners. */
+
+import { endsOf } from "./edges.js";
+
+const VERTEX_SHADER = `#version 300 es
+uniform vec2 centre; // in lattice units
+uniform vec2 scale;
+uniform float pointSize;
+in vec2 position;
+in vec4 color;
+out vec4 tint;
+void main() {
+  // The difference first: it is exact where single precision would not hold a place at 64 times.
+  gl_Position = vec4((position - centre) * scale, 0.0, 1.0);
+  gl_PointSize = pointSize;
+  tint = color;
+}`;
+
+/** Colours are interpolated as a file means them, and multiplied by alpha for the page. */
+const PICTURE_SHADER = `#version 300 es
+precision highp float;
+in vec4 tint;
+out vec4 shade;
+void main() {
+  shade = vec4(tint.rgb * tint.a, tint.a);
+}`;
+
+const INK_SHADER = `#version 300 es
+precision highp float;
+uniform vec4 ink;
+uniform bool isRound;
+out vec4 shade;
+void main() {
+  if (isRound && distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;
+  shade = vec4(ink.rgb * ink.a, ink.a);
+}`;
+
+const POSITION = 0;
+const COLOR = 1;
+const LINE_INK = [0, 0.85, 1, 0.75];
+const RIM_INK = [0, 0, 0, 0.8];
+const DOT_INK = [1, 0.85, 0, 1];
+
+export class GlPainter {
+  /** @param {WebGL2RenderingContext} gl of a canvas without anti-aliasing */
+  constructor(gl) {
+    this.gl = gl;
+    this.canvas = gl.canvas;
+    this.prepare();
+  }
+
+  /** Makes what lives in the graphics hardware; again after it was lost. */
+  prepare() {
+    const { gl } = this;
+    this.picture = programOf(gl, PICTURE_SHADER);
+    this.inks = programOf(gl, INK_SHADER);
+    this.positions = gl.createBuffer();
+    this.colors = gl.createBuffer();
+    this.corners = gl.createBuffer();
+    this.ends = gl.createBuffer();
+    gl.enableVertexAttribArray(POSITION);
+    gl.enableVertexAttribArray(COLOR);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    if (this.mesh) this.setMesh(this.mesh);
+  }
+
+  /** @param {import("../vmesh.js").Mesh} mesh */
+  setMesh(mesh) {
+    const { gl } = this;
+    this.mesh = mesh;
+    this.nEnds = 0;
+    fill(gl, gl.ARRAY_BUFFER, this.positions, Float32Array.from(mesh.vertices));
+    gl.vertexAttribPointer(POSITION, 2, gl.FLOAT, false, 0, 0);
+    fill(gl, gl.ARRAY_BUFFER, this.colors, colorsOf(mesh));
+    gl.vertexAttribPointer(COLOR, 4, gl.UNSIGNED_SHORT, true, 0, 0);
+    fill(gl, gl.ELEMENT_ARRAY_BUFFER, this.corners, Uint32Array.from(mesh.triangles));
+  }
+
+  /**
+   * @param {object} frame columns and rows of the canvas; left, top, scaleX, scaleY of the picture
+   * @param {{wireframe?: boolean, vertices?: boolean, pixelRatio?: number}} [marks]
+   */
+  draw(frame, { wireframe = false, vertices = false, pixelRatio = 1 } = {}) {
+    const { gl, mesh } = this;
+    if (this.canvas.width !== frame.columns) this.canvas.width = frame.columns;
+    if (this.canvas.height !== frame.rows) this.canvas.height = frame.rows;
+    gl.viewport(0, 0, frame.columns, frame.rows);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.disable(gl.BLEND);
+    this.use(this.picture, frame);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    gl.drawElements(gl.TRIANGLES, mesh.triangles.length, gl.UNSIGNED_INT, 0);
+    if (!wireframe && !vertices) return;
+    gl.enable(gl.BLEND);
+    this.use(this.inks, frame);
+    if (wireframe) this.drawEdges();
+    if (vertices) this.drawVertices(pixelRatio);
+  }
+
+  /** Chooses a program and tells it where the picture is. */
+  use(program, { columns, rows, left, top, scaleX, scaleY }) {
+    const { gl } = this;
+    const unit = 2 ** this.mesh.subdivision;
+    gl.useProgram(program);
+    const centreX = ((columns / 2 - left) / scaleX) * unit;
+    const centreY = ((rows / 2 - top) / scaleY) * unit;
+    gl.uniform2f(gl.getUniformLocation(program, "centre"), centreX, centreY);
+    const [clipX, clipY] = [(2 * scaleX) / (unit * columns), (-2 * scaleY) / (unit * rows)];
+    gl.uniform2f(gl.getUniformLocation(program, "scale"), clipX, clipY);
+  }
+
+  drawEdges() {
+    const { gl } = this;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.ends);
+    if (this.nEnds === 0) {
+      const ends = endsOf(this.mesh);
+      fill(gl, gl.ELEMENT_ARRAY_BUFFER, this.ends, ends);
+      this.nEnds = ends.length;
+    }
+    this.setInk(LINE_INK, 1, false);
+    gl.drawElements(gl.LINES, this.nEnds, gl.UNSIGNED_INT, 0);
+  }
+
+  drawVertices(pixelRatio) {
+    const { gl, mesh } = this;
+    for (const [ink, size] of [[RIM_INK, 6], [DOT_INK, 4]]) {
+      this.setInk(ink, size * pixelRatio, true);
+      gl.drawArrays(gl.POINTS, 0, mesh.vertices.length / 2);
+    }
+  }
+
+  setInk(ink, pointSize, isRound) {
+    const { gl, inks } = this;
+    gl.uniform4fv(gl.getUniformLocation(inks, "ink"), ink);
+    gl.uniform1f(gl.getUniformLocation(inks, "pointSize"), pointSize);
+    gl.uniform1i(gl.getUniformLocation(inks, "isRound"), isRound ? 1 : 0);
+  }
+}
+
+function programOf(gl, fragmentShader) {
+  const program = gl.createProgram();
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, VERTEX_SHADER],
+    [gl.FRAGMENT_SHADER, fragmentShader],
+  ]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.bindAttribLocation(program, POSITION, "position");
+  gl.bindAttribLocation(program, COLOR, "color");
+  gl.linkProgram(program);
+  return program;
+}
+
+function fill(gl, target, buffer, array) {
+  gl.bindBuffer(target, buffer);
+  gl.bufferData(target, array, gl.STATIC_DRAW);
+}
+
+/** Red, green, blue and alpha of each vertex, 65535 for the largest sample. */
+function colorsOf({ samples, steps, depth }) {
+  const n = steps.length;
+  const gain = 65535 / (2 ** depth - 1);
+  const colors = new Uint16Array((4 * samples.length) / n).fill(65535);
+  for (let v = 0; v < samples.length / n; v++) {
+    for (let i = 0; i < Math.max(n, 3); i++) {
+      colors[4 * v + i] = Math.round(samples[n * v + (n === 1 ? 0 : i)] * gain);
+    }
+  }
+  return colors;
+}

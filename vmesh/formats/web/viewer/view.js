@@ -1,0 +1,79 @@
+/** Which part of a picture a stage shows, and how large. */
+
+const MOST_SCALE = 64;
+
+export class View {
+  constructor() {
+    /** The picture, in its pixels. */
+    this.width = 1;
+    this.height = 1;
+    /** The stage, in pixels of the device. */
+    this.columns = 1;
+    this.rows = 1;
+    /** Pixels of the device for each of the picture. */
+    this.scale = 1;
+    /** The point of the picture in the middle of the stage. */
+    this.x = 0;
+    this.y = 0;
+    /** Whether the picture fills the stage, also when that changes its size. */
+    this.isFitted = true;
+  }
+
+  setPicture(width, height) {
+    this.width = width;
+    this.height = height;
+    this.fit();
+  }
+
+  setStage(columns, rows) {
+    this.columns = columns;
+    this.rows = rows;
+    if (this.isFitted) this.fit();
+  }
+
+  get fittedScale() {
+    return Math.min(this.columns / this.width, this.rows / this.height);
+  }
+
+  /** Shows all of the picture as large as the stage allows. */
+  fit() {
+    this.center(this.fittedScale);
+    this.isFitted = true;
+  }
+
+  center(scale) {
+    this.scale = scale;
+    this.x = this.width / 2;
+    this.y = this.height / 2;
+    this.isFitted = false;
+  }
+
+  /** Enlarges by a factor; the picture stays where it is at a place of the stage. */
+  zoomAt(factor, column, row) {
+    const least = Math.min(this.fittedScale, 1) / 4;
+    const most = Math.max(this.fittedScale, MOST_SCALE);
+    const scale = clamp(this.scale * factor, least, most);
+    const gain = 1 / this.scale - 1 / scale;
+    this.scale = scale;
+    this.pan((column - this.columns / 2) * gain * scale, (row - this.rows / 2) * gain * scale);
+  }
+
+  /** Moves the stage over the picture by pixels of the device. */
+  pan(columns, rows) {
+    this.x = clamp(this.x + columns / this.scale, 0, this.width);
+    this.y = clamp(this.y + rows / this.scale, 0, this.height);
+    this.isFitted = false;
+  }
+
+  /** What a painter needs; the picture starts at a whole pixel of the device. */
+  get frame() {
+    const { columns, rows, scale } = this;
+    const left = Math.round(columns / 2 - this.x * scale);
+    const top = Math.round(rows / 2 - this.y * scale);
+    return { columns, rows, left, top, scaleX: scale, scaleY: scale };
+  }
+}
+
+function clamp(value, least, most) {
+  return Math.min(Math.max(value, least), most);
+}
