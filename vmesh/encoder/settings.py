@@ -47,7 +47,7 @@ class Settings:
     target_psnr : float, optional
         Decibels over all samples, met from above within 0.1 dB ("adaptive").
     vertices : int, optional
-        Vertices wanted, met exactly ("adaptive") or within 2 % ("blue-noise").
+        Vertices wanted, met exactly, or within 2 % ("blue-noise", and effort 1).
     density : float, optional
         Vertices wanted per pixel, above 0 and up to 1.
     effort : int
