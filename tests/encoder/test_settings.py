@@ -38,7 +38,7 @@ from vmesh.encoder.settings import DEFAULT_EFFORT, Settings
         {"effort": 0},
         {"effort": 10},
         {"color_step": 0},
-        {"color_step": 256},
+        {"color_step": 65_536},
         {"seed": -1},
     ],
 )

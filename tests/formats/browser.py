@@ -20,7 +20,7 @@ pytest.importorskip(
 
 from playwright import sync_api as playwright  # noqa: E402
 
-__all__ = ["pixels_of", "playwright", "running", "settle"]
+__all__ = ["pixels_of", "playwright", "running", "settle", "wait_until"]
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 _ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -50,6 +50,18 @@ def settle(page: playwright.Page) -> None:
     page.evaluate(
         "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
     )
+
+
+def wait_until(page: playwright.Page, expression: str) -> None:
+    """Wait until an expression is true in the page.
+
+    Asked from here: the page's own policy forbids it to evaluate a string again and again.
+    """
+    for _ in range(600):
+        if page.evaluate(expression):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(f"never true: {expression}")
 
 
 def pixels_of(target: playwright.Page | playwright.Locator) -> UInt8Array:

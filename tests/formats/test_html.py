@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import vmesh
-from tests.formats.browser import pixels_of, playwright, running, settle
+from tests.formats.browser import pixels_of, playwright, running, settle, wait_until
 from tests.pictures import PICTURES, psnr
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html import element_script, page_of
@@ -118,7 +118,7 @@ def test_a_picture_keeps_filling_its_stage(
 ) -> None:
     stage = show(page, exported(mesh, tmp_path), tmp_path)
     page.set_viewport_size({"width": 300, "height": 200 + BAR})
-    page.wait_for_function("document.querySelector('canvas').width === 300")
+    wait_until(page, "document.querySelector('canvas').width === 300")
     assert page.locator("#zoom").inner_text() == "50 %"
     assert psnr(pixels_of(stage), np.asarray(vmesh.render(mesh, scale=0.5))) > 40
 
@@ -131,7 +131,7 @@ def test_the_wheel_zooms_at_the_pointer_to_64_times_without_blur(
     page.mouse.move(200, 160)
     for _ in range(20):
         page.mouse.wheel(0, -240)
-    page.wait_for_function("document.querySelector('#zoom').textContent === '6400 %'")
+    wait_until(page, "document.querySelector('#zoom').textContent === '6400 %'")
     # The picture was fitted to 600 x 400 pixels, and its point at (200, 160) has stayed there.
     left, top = 30 * 64 - 200, 24 * 64 - 160
     enlarged = np.asarray(vmesh.render(mesh, scale=64))[top : top + 400, left : left + 600]
@@ -151,7 +151,7 @@ def test_the_mouse_and_the_keys_move_the_picture(
     stage.press("ArrowLeft")
     assert psnr(pixels_of(stage)[:370, 14:], picture[30:, :586]) > 45
     stage.press("+")
-    page.wait_for_function("document.querySelector('#zoom').textContent === '125 %'")
+    wait_until(page, "document.querySelector('#zoom').textContent === '125 %'")
     stage.press("0")
     assert psnr(pixels_of(stage), picture) > 45
 
@@ -167,7 +167,7 @@ def test_two_fingers_zoom(page: playwright.Page, mesh: vmesh.Mesh, tmp_path: Pat
     fingers("touchStart", 250, 350)
     fingers("touchMove", 200, 400)
     fingers("touchEnd")
-    page.wait_for_function("document.querySelector('#zoom').textContent === '200 %'")
+    wait_until(page, "document.querySelector('#zoom').textContent === '200 %'")
 
 
 @pytest.mark.parametrize(("name", "key"), [("Wireframe", "w"), ("Vertices", "v")])
@@ -250,7 +250,7 @@ class Site:
 
     def wait_for(self, n_events: int) -> list[str]:
         """Events of the elements, once there are so many."""
-        self.page.wait_for_function(f"events.length >= {n_events}")
+        wait_until(self.page, f"events.length >= {n_events}")
         events: list[str] = self.page.evaluate("events")
         return events
 

@@ -67,7 +67,7 @@ def expected(data: bytes) -> dict[str, Any]:
     ends = [chunk.content_offset + chunk.length for chunk in chunks]
     ends = [chunks[0].offset - 4, *ends]
     return {
-        "version": layout.VERSION,
+        "version": (data[5] >> 4, data[5] & 15),
         "width": header.width,
         "height": header.height,
         "subdivision": header.subdivision,
