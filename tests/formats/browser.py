@@ -18,7 +18,7 @@ pytest.importorskip(
     "playwright.sync_api", reason="playwright is not installed: pages are not tried in a browser"
 )
 
-from playwright import sync_api as playwright  # noqa: E402
+from playwright import sync_api as playwright
 
 __all__ = ["pixels_of", "playwright", "running", "settle", "wait_until"]
 

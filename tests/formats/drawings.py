@@ -33,7 +33,9 @@ def compare(drawn: UInt8Array, mesh: Mesh, scale: int) -> Difference:
     ours = flatten(vmesh.render(mesh, scale=scale))
     errors = np.abs(drawn.astype(float) - ours).max(axis=2)
     inside = _inside(mesh, scale)
-    low, high = ((side(ours, (3, 3, 1)) + 1.0 * ours) / 2 for side in (minimum_filter, maximum_filter))
+    low, high = (
+        (side(ours, (3, 3, 1)) + 1.0 * ours) / 2 for side in (minimum_filter, maximum_filter)
+    )
     beyond = np.maximum(np.maximum(low - drawn, drawn - high), 0).max(axis=2)
     calm = float(errors[inside].mean()) if inside.any() else 0.0
     edges = float(errors[~inside].mean()) if not inside.all() else 0.0

@@ -25,6 +25,8 @@ HTMLCanvasElement.prototype.getContext = function (kind, options) {
   return kind === "webgl2" ? null : getContext.call(this, kind, options);
 };
 """
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[playwright.Browser]:
     with running() as started:

@@ -88,9 +88,7 @@ def test_supersampling_weighs_colors_by_their_alpha() -> None:
     vertices = [[0, 0], [32, 0], [64, 0], [0, 64], [32, 64], [64, 64]]
     triangles = [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]
     red, green = [255, 0, 0, 255], [0, 255, 0, 0]
-    mesh = vmesh.Mesh.from_colors(
-        64, 64, vertices, triangles, [red, red, green, red, red, green]
-    )
+    mesh = vmesh.Mesh.from_colors(64, 64, vertices, triangles, [red, red, green, red, red, green])
     pixel = vmesh.render(mesh, width=1, height=1, supersample=16)[0, 0]
     assert pixel[0] > 200
     assert pixel[3] == pytest.approx(255 * 0.75, abs=3)

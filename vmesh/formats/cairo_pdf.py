@@ -6,8 +6,8 @@ import io
 from typing import Any, BinaryIO, Final
 
 from vmesh.formats.cairo_mesh import MeshPattern, import_cairo
+from vmesh.formats.description import Description
 from vmesh.formats.page import Page
-from vmesh.formats.pdf_metadata import Description
 from vmesh.formats.raster import with_alpha
 from vmesh.mesh import Mesh
 

@@ -13,7 +13,7 @@ _DETAILS: Final = 0x8769  # tag of the second directory, with the camera's entri
 
 
 def read_exif(block: bytes) -> dict[int, Any]:
-    """Entries of the first two directories of an EXIF block by their tags, none if it is damaged."""
+    """Entries by tag of the first two directories of an EXIF block, none if it is damaged."""
     if not block:
         return {}
     exif = Image.Exif()

@@ -13,8 +13,7 @@ from PIL import Image, ImageOps
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.errors import ImageError
 from vmesh.formats.raster import fits_icc, rescale
-from vmesh.limits import DEFAULT_LIMITS, Limits
-from vmesh.limits import MAX_SIDE
+from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata
 
 # Well-kept decoders of what people have; not those that run other programs, as for PostScript.

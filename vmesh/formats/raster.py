@@ -9,10 +9,9 @@ from typing import BinaryIO, Final
 import numpy as np
 from PIL import Image
 
-from vmesh.arrays import Int32Array, Int64Array, SampleArray, UInt8Array
+from vmesh.arrays import Int32Array, Int64Array, SampleArray
 from vmesh.kernels.scanline import SUBPIXEL, draw, measure
-from vmesh.limits import DEFAULT_LIMITS, Limits
-from vmesh.limits import MAX_SIDE
+from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Matrix, Mesh, Metadata, Placement
 
 MAX_SUPERSAMPLE: Final = 16

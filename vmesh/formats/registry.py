@@ -62,7 +62,9 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in FORMATS:
-        raise ValueError(f"expected a name that ends in {', '.join(FORMATS)}, got {os.fspath(path)}")
+        raise ValueError(
+            f"expected a name that ends in {', '.join(FORMATS)}, got {os.fspath(path)}"
+        )
     return FORMATS[suffix]
 
 
@@ -74,13 +76,11 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
     from vmesh.formats.raster import render
 
     raster = render(mesh, **options)
-    target.writer()(
-        raster, stream, target.raster_name, metadata=mesh.metadata, depth=mesh.depth
-    )
+    target.writer()(raster, stream, target.raster_name, metadata=mesh.metadata, depth=mesh.depth)
 
 
 def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
-    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG, PDF or HTML, by the ending of the file's name.
+    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG, PDF or HTML, by the ending of the name.
 
     Parameters
     ----------
@@ -89,7 +89,8 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
         Replaced only when the new file is complete.
     **options
         For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
-        with a ``tolerance`` in levels, or "flat", and ``merge``; for PDF ``page_width``, such as "210mm", and ``backend``, "native" or "cairo".
+        with a ``tolerance`` in levels, or "flat", and ``merge``; for PDF ``page_width``, such as
+        "210mm", and ``backend``, "native" or "cairo".
     """
     target = format_of(path)
     with atomic_output(path) as stream:

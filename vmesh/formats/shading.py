@@ -31,9 +31,9 @@ from vmesh.mesh import Mesh
 MAX_COORDINATE: Final = 0xFFFF
 _SQUARE: Final = 1 << 15
 # Pixels by which everything is moved. pdfium leaves out each row of pixels at whose top a triangle
-# has a corner, so vertices must not lie on rows of the device at any common resolution. To the right
-# and up, since pdfium and mupdf look at a pixel's top left corner where they should look at its
-# centre: downwards they come 1 to 4 dB further from the true picture.
+# has a corner, so vertices must not lie on rows of the device at any common resolution. To the
+# right and up, since pdfium and mupdf look at a pixel's top left corner where they should look at
+# its centre: downwards they come 1 to 4 dB further from the true picture.
 _SHIFT: Final = (0.0031, -0.0037)
 
 

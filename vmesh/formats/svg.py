@@ -1,12 +1,12 @@
 """Mesh -> SVG: for each triangle, or region of several, one flat colour or linear gradient.
 
-SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the best
-linear gradient is `svg_regions.py`, its text `svg_gradients.py`. A single channel of colour is drawn
-exactly, so that three layers, one for each channel, joined by `mix-blend-mode: screen`, show the
-mesh as it is.
+SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the
+best linear gradient is `svg_regions.py`, its text `svg_gradients.py`. A single channel of colour is
+drawn exactly, so that three layers, one for each channel, joined by `mix-blend-mode: screen`, show
+the mesh as it is.
 
-Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the same
-to the last digit on both sides (`svg_outlines.py`). Alpha is drawn as a mask of the same make.
+Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
+same to the last digit on both sides (`svg_outlines.py`). Alpha is drawn as a mask of the same make.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.formats.pdf_metadata import Description
+from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
 from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
 from vmesh.formats.svg_layers import Layer, Mode, layers_of
@@ -34,7 +34,7 @@ from vmesh.mesh import Mesh
 _NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _MASK: Final = "_alpha"  # names of gradients have no underscore
 # Pixels by which flat triangles move up and left. A centre that lies on an edge then falls to its
-# right or below it, as in our raster, whatever a program's own rule; gradients would be shifted too.
+# right or below it, as in our raster, whatever a program's own rule; gradients would shift too.
 _FLAT_SHIFT: Final = 1 / 16
 _CHUNK: Final = 1 << 12  # elements that are written at a time
 _GRADIENT: Final = '<linearGradient id="{}"{}</linearGradient>'

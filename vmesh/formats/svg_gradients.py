@@ -1,8 +1,8 @@
 """Linear gradients as text: where they start and end, and the colours there.
 
 A gradient is told in the unit square of its region's bounding box, in which its value is
-a + b x + c y with b >= 0. It may start and end anywhere along the lines of one value, and before and
-beyond the region as long as there are colours for the values there. Ends at 0 are not written::
+a + b x + c y with b >= 0. It may start and end anywhere along the lines of one value, and before
+and beyond the region as long as there are colours for the values there. Ends at 0 are not written::
 
     (0, 0)
       +-----------------+      c >= 0: from the corner (0, 0) to (x2, y2)

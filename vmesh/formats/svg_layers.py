@@ -1,8 +1,9 @@
 """Layers of a drawing: what is painted on each other, and what with.
 
 A layer paints regions, each with one gradient or flat colour. Where one gradient will not do, the
-first layer shows the red of a triangle and two more, which are *screened* onto it, its green and its
-blue: a single channel is exact, and the screen of colours that have no channel in common is their sum.
+first layer shows the red of a triangle and two more, which are *screened* onto it, its green and
+its blue: a single channel is exact, and the screen of colours that have no channel in common is
+their sum.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ class Outlines:
 
 
 def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
-    """Outlines of the regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
+    """Outlines of regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
     twins = find_twins(mesh.triangles, mesh.n_vertices).astype(np.int64)
     own = np.repeat(regions, 3)
     across = np.where(twins >= 0, own[twins], -1)

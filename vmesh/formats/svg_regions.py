@@ -77,7 +77,7 @@ class Moments:
         return maps
 
     def explained(self) -> Float64Array:
-        """What the best gradient takes off the squared error of the best flat colour, shape (n,)."""
+        """What the best gradient takes off the squared error of a flat colour, shape (n,)."""
         crossed = self.scatters[:, :2, 2:]
         # Eigenvalues of inv(S) C C^T, which are those of the whitened product.
         matrix = self.maps() @ np.swapaxes(crossed, 1, 2)
@@ -87,7 +87,7 @@ class Moments:
         return largest
 
     def errors(self) -> Float64Array:
-        """Squared errors that the best gradients leave, in squared levels times pixels, shape (n,)."""
+        """Squared errors that the best gradients leave, shape (n,), levels squared times pixels."""
         whole = np.trace(self.scatters[:, 2:, 2:], axis1=1, axis2=2)
         left: Float64Array = whole - self.explained()
         return left

@@ -1,4 +1,4 @@
-"""What a PDF says about its picture: document information, and the same as XMP."""
+"""What a document says about its picture, as PDF, SVG and pages tell it."""
 
 from __future__ import annotations
 
@@ -15,10 +15,16 @@ _DESCRIPTION, _ARTIST, _COPYRIGHT = 270, 315, 33432
 _DATES: Final = (36867, 306)  # when the picture was taken, when its file was changed
 _DATE: Final = re.compile(r"(\d{4}):([01]\d):([0-3]\d) ([0-2]\d):([0-5]\d):([0-5]\d)")
 _PACKET: Final = """<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>
-<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
-<rdf:Description rdf:about="" xmlns:pdf="http://ns.adobe.com/pdf/1.3/" xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmlns:dc="http://purl.org/dc/elements/1.1/">
+<x:xmpmeta xmlns:x="adobe:ns:meta/">
+<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
+<rdf:Description rdf:about=""
+ xmlns:pdf="http://ns.adobe.com/pdf/1.3/"
+ xmlns:xmp="http://ns.adobe.com/xap/1.0/"
+ xmlns:dc="http://purl.org/dc/elements/1.1/">
 {}
-</rdf:Description></rdf:RDF></x:xmpmeta>
+</rdf:Description>
+</rdf:RDF>
+</x:xmpmeta>
 <?xpacket end="w"?>"""
 _ITEM: Final = '<rdf:{0}><rdf:li xml:lang="x-default">{1}</rdf:li></rdf:{0}>'
 
@@ -64,7 +70,10 @@ class Description:
 
     def as_xmp(self) -> bytes:
         """The XMP packet of the document."""
-        lines = [f"<pdf:Producer>{_PRODUCER}</pdf:Producer>", "<dc:format>application/pdf</dc:format>"]
+        lines = [
+            f"<pdf:Producer>{_PRODUCER}</pdf:Producer>",
+            "<dc:format>application/pdf</dc:format>",
+        ]
         if self.title:
             lines.append(f"<dc:title>{_ITEM.format('Alt', escape(self.title))}</dc:title>")
         if self.author:
