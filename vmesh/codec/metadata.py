@@ -1,4 +1,4 @@
-"""Chunks beside the mesh -> Metadata (spec, section 4); needs no compiled code."""
+"""Chunks beside the mesh -> Metadata (spec, section 9); needs no compiled code."""
 
 from __future__ import annotations
 
