@@ -78,8 +78,8 @@ def with_content(data: bytes, tag: bytes, content: bytes) -> bytes:
     return file_of(header, [(t, content if t == tag else c) for t, c in contents])
 
 
-def header_fields(data: bytes) -> dict[str, int]:
-    """Fields of the header by name, its steps left out."""
+def split_header(data: bytes) -> tuple[dict[str, int], bytes]:
+    """Fields of the header of a file by name, and the bytes of its steps."""
     header, _ = split(data)
     values, offset = [header[0], header[1]], 2
     for _ in range(3):
@@ -88,23 +88,19 @@ def header_fields(data: bytes) -> dict[str, int]:
     fields = dict(zip(HEADER_FIELDS, values, strict=True))
     for name, (first, size) in FORMAT_FIELDS.items():
         fields[name] = fields["format"] >> first & (1 << size) - 1
-    return fields
+    return fields, header[offset:]
 
 
-def header_steps(data: bytes) -> bytes:
-    """The bytes of the steps."""
-    header, _ = split(data)
-    offset = 2
-    for _ in range(3):
-        _, offset = split_varint(header, offset)
-    return header[offset:]
+def header_fields(data: bytes) -> dict[str, int]:
+    """Fields of the header of a file by name, its steps left out."""
+    return split_header(data)[0]
 
 
 def with_header(data: bytes, steps: bytes | None = None, /, **values: int) -> bytes:
     """The file with its steps or fields of its header replaced."""
     _, contents = split(data)
-    own_steps = header_steps(data)
-    fields = {**header_fields(data), **values}
+    own_fields, own_steps = split_header(data)
+    fields = {**own_fields, **values}
     if "format" not in values:
         fields["format"] = sum(fields[name] << first for name, (first, _) in FORMAT_FIELDS.items())
     numbers = b"".join(varint(fields[name]) for name in HEADER_FIELDS[2:])

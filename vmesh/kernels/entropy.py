@@ -394,23 +394,27 @@ def code_levels(
     int
         OK or BAD_NUMBER.
     """
+    n_parents = np.int64(0)
     for i in range(order.shape[0]):
-        v = order[i]
+        n_parents = max(n_parents, starts[i + 1] - starts[i])
+    weights = np.empty(n_parents, np.int64)
+    for i in range(order.shape[0]):
+        v, own = order[i], parents[starts[i] : starts[i + 1]]
+        weights[:] = 4096
         for z in range(levels.shape[1]):
-            total, weights = np.int64(0), np.int64(0)
-            for j in range(starts[i], starts[i + 1]):
-                weight = np.int64(4096)
-                if z > 0:
-                    weight = weight_of(levels[parents[j], 0] - levels[v, 0])
-                total += weight * levels[parents[j], z]
-                weights += weight
+            if z == 1:  # the first component is known by now
+                weigh(levels, v, own, weights)
+            total, weight = np.int64(0), np.int64(0)
+            for j in range(own.shape[0]):
+                total += weights[j] * levels[own[j], z]
+                weight += weights[j]
             prediction, spread, lean = np.int64(0), N_SPREADS - 1, 0
-            if weights > 0:
-                prediction = (2 * total + weights) // (2 * weights)
+            if weight > 0:
+                prediction = (2 * total + weight) // (2 * weight)
                 # Whether the mean was rounded down or up by more than 3/20.
-                rest = 20 * (total - prediction * weights)
-                lean = 1 if rest > 3 * weights else (2 if rest < -3 * weights else 0)
-                spread = spread_of(levels, z, v, parents[starts[i] : starts[i + 1]], prediction)
+                rest = 20 * (total - prediction * weight)
+                lean = 1 if rest > 3 * weight else (2 if rest < -3 * weight else 0)
+                spread = spread_of(levels, z, own, weights, prediction)
             base = z * COMPONENT_CONTEXTS
             context = base + spread * SIZE_CONTEXTS
             error = levels[v, z] - prediction
@@ -429,30 +433,31 @@ def code_levels(
 
 
 @kernel
-def weight_of(difference: int) -> np.int64:
-    """Weight of a parent that differs so much in the first component."""
-    return np.int64(max(4096 // (1 + 2 * abs(difference)), 1))
+def weigh(levels: Int32Array, v: int, parents: Int32Array, weights: Int64Array) -> None:
+    """Fill in the weights of a vertex's parents by how much they differ in the first component."""
+    for j in range(parents.shape[0]):
+        difference = abs(levels[parents[j], 0] - levels[v, 0])
+        weights[j] = max(4096 // (1 + 2 * difference), 1)
 
 
 @kernel
-def spread_of(levels: Int32Array, z: int, v: int, parents: Int32Array, prediction: np.int64) -> int:
+def spread_of(
+    levels: Int32Array, z: int, parents: Int32Array, weights: Int64Array, prediction: np.int64
+) -> int:
     """Class of the weighted variance of the parents' levels around their mean.
 
     From the prediction no level counts as further away than LARGEST_DEVIATION, which keeps the
     sums within 64 bits.
     """
-    total, weights, squares = np.int64(0), np.int64(0), np.int64(0)
-    for u in parents:
-        weight = np.int64(4096)
-        if z > 0:
-            weight = weight_of(levels[u, 0] - levels[v, 0])
+    total, weight, squares = np.int64(0), np.int64(0), np.int64(0)
+    for j in range(parents.shape[0]):
         deviation = np.int64(
-            min(max(levels[u, z] - prediction, -LARGEST_DEVIATION), LARGEST_DEVIATION)
+            min(max(levels[parents[j], z] - prediction, -LARGEST_DEVIATION), LARGEST_DEVIATION)
         )
-        total += weight * deviation
-        squares += weight * deviation * deviation
-        weights += weight
-    variance = 1024 * (squares * weights - total * total) // (weights * weights)
+        total += weights[j] * deviation
+        squares += weights[j] * deviation * deviation
+        weight += weights[j]
+    variance = 1024 * (squares * weight - total * total) // (weight * weight)
     spread = 0
     while spread < N_SPREADS - 2 and variance >= SPREADS[spread]:
         spread += 1

@@ -50,6 +50,15 @@ def row_at(y: int) -> int:
 
 
 @kernel
+def corners(vertices: Int64Array, i: int, j: int, k: int) -> tuple[int, int, int, int, int, int]:
+    """Corner i of a triangle, and the corners j and k relative to it."""
+    x, y = vertices[i, 0], vertices[i, 1]
+    x1, y1 = vertices[j, 0] - x, vertices[j, 1] - y
+    x2, y2 = vertices[k, 0] - x, vertices[k, 1] - y
+    return x, y, x1, y1, x2, y2
+
+
+@kernel
 def column_at(ax: int, ay: int, bx: int, by: int, y: int) -> tuple[int, int, int, int, int]:
     """Where the edge a-b, a above b, meets the centres of row y.
 
@@ -141,11 +150,10 @@ def measure(vertices: Int64Array, triangles: Int32Array, height: int) -> tuple[i
     n_rows = 0
     for t in range(triangles.shape[0]):
         i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        x1, y1 = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1]
-        x2, y2 = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1]
+        _, y0, x1, y1, x2, y2 = corners(vertices, i, j, k)
         area += x1 * y2 - x2 * y1
-        first = max(row_at(vertices[i, 1] + min(0, y1, y2)), 0)
-        last = min(row_at(vertices[i, 1] + max(0, y1, y2)), height)
+        first = max(row_at(y0 + min(0, y1, y2)), 0)
+        last = min(row_at(y0 + max(0, y1, y2)), height)
         n_rows += 1 + max(last - first, 0)
     return area, n_rows
 
@@ -261,9 +269,7 @@ def fill(
     bases = np.zeros((4, 3), np.int64)
     for t in range(triangles.shape[0]):
         i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        x0, y0 = vertices[i, 0], vertices[i, 1]
-        x1, y1 = vertices[j, 0] - x0, vertices[j, 1] - y0
-        x2, y2 = vertices[k, 0] - x0, vertices[k, 1] - y0
+        x0, y0, x1, y1, x2, y2 = corners(vertices, i, j, k)
         det = x1 * y2 - x2 * y1
         if det <= 0:
             continue
@@ -290,9 +296,7 @@ def fill_deep(
     rows = np.empty((height, 2), np.int64)
     for t in range(triangles.shape[0]):
         i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        x0, y0 = vertices[i, 0], vertices[i, 1]
-        x1, y1 = vertices[j, 0] - x0, vertices[j, 1] - y0
-        x2, y2 = vertices[k, 0] - x0, vertices[k, 1] - y0
+        x0, y0, x1, y1, x2, y2 = corners(vertices, i, j, k)
         det = x1 * y2 - x2 * y1
         if det <= 0:
             continue
@@ -392,9 +396,7 @@ def accumulate(
     rows = np.empty((height, 2), np.int64)
     for t in range(triangles.shape[0]):
         i, j, k = triangles[t, 0], triangles[t, 1], triangles[t, 2]
-        x0, y0 = vertices[i, 0], vertices[i, 1]
-        x1, y1 = vertices[j, 0] - x0, vertices[j, 1] - y0
-        x2, y2 = vertices[k, 0] - x0, vertices[k, 1] - y0
+        x0, y0, x1, y1, x2, y2 = corners(vertices, i, j, k)
         scale = 1.0 / (x1 * y2 - x2 * y1)
         first, last = spans(vertices, triangles[t], width, height, rows)
         for y in range(first, last):

@@ -13,6 +13,7 @@ export class RasterPainter {
   /** @param {import("../vmesh.js").Mesh} mesh */
   setMesh(mesh) {
     this.mesh = mesh;
+    this.ends = null;
     this.picture = document.createElement("canvas");
     this.picture.width = mesh.width;
     this.picture.height = mesh.height;
@@ -38,11 +39,11 @@ export class RasterPainter {
   }
 
   drawEdges(place) {
-    const ends = endsOf(this.mesh);
+    this.ends ??= endsOf(this.mesh);
     this.context.beginPath();
-    for (let at = 0; at < ends.length; at += 2) {
-      this.context.moveTo(...place(ends[at]));
-      this.context.lineTo(...place(ends[at + 1]));
+    for (let at = 0; at < this.ends.length; at += 2) {
+      this.context.moveTo(...place(this.ends[at]));
+      this.context.lineTo(...place(this.ends[at + 1]));
     }
     this.context.strokeStyle = "rgb(0 217 255 / 75%)";
     this.context.stroke();
