@@ -29,9 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vmesh.arrays import Int32Array, SampleArray
-from vmesh.limits import MAX_DEPTH
-
-PLAIN_DEPTH: Final = 8
+from vmesh.limits import MAX_DEPTH, PLAIN_DEPTH
 
 # The squared error of a unit of Y, Co, Cg counts 3, 1/2 and 3/4 in the sum over R, G, B, which
 # would balance steps of 1 : 2.4 : 2. Finer chroma serves as well: at 2 and 4 % of the pixels of
@@ -146,5 +144,30 @@ class ColorLattice:
             values[:, 0] = blue + orange
             values[:, 1] = green_minus + middle
             values[:, 2] = blue
-        dtype = np.uint8 if self.depth == PLAIN_DEPTH else np.uint16
-        return np.clip(values, 0, self.max_sample).astype(dtype)
+        return _samples(np.clip(values, 0, self.max_sample), self.depth)
+
+
+def rescale(samples: SampleArray, depth: int, n_bits: int) -> SampleArray:
+    """Samples of a number of bits in another number of bits, rounded.
+
+    Parameters
+    ----------
+    samples : ndarray
+        Any shape, uint8 or uint16.
+    depth, n_bits : int
+        Bits of a sample before and after, 8 to 16.
+
+    Returns
+    -------
+    ndarray
+        The same shape, uint8 for 8 bits, else uint16.
+    """
+    if depth == n_bits:
+        return samples
+    largest, wanted = (1 << depth) - 1, (1 << n_bits) - 1
+    return _samples((2 * wanted * samples.astype(np.int64) + largest) // (2 * largest), n_bits)
+
+
+def _samples(values: npt.NDArray[np.integer], depth: int) -> SampleArray:
+    """Integers as samples of so many bits."""
+    return values.astype(np.uint8 if depth == PLAIN_DEPTH else np.uint16)

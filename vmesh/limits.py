@@ -9,6 +9,7 @@ from vmesh.errors import LimitError
 
 MAX_SIDE: Final = 65_535
 MAX_SUBDIVISION: Final = 8
+PLAIN_DEPTH: Final = 8  # bits of a sample where nothing else is said
 MAX_DEPTH: Final = 16
 # With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
 MAX_LATTICE_SIDE: Final = 1 << 19

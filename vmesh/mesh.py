@@ -20,8 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray, UInt8Array
-from vmesh.color_lattice import PLAIN_DEPTH, ColorLattice
-from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
+from vmesh.color_lattice import ColorLattice, rescale
+from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION, PLAIN_DEPTH
 
 _LARGEST_ENTRY: Final = 1e9
 
@@ -177,9 +177,7 @@ class Mesh:
     @property
     def plain_colors(self) -> UInt8Array:
         """Colours of the vertices in 8 bits, rounded if they have more; shape (n, c), uint8."""
-        largest = self.lattice.max_sample
-        wide = self.colors.astype(np.int64)
-        return ((2 * 255 * wide + largest) // (2 * largest)).astype(np.uint8)
+        return rescale(self.colors, self.depth, PLAIN_DEPTH)
 
     @property
     def points(self) -> Float64Array:

@@ -15,11 +15,12 @@ from PIL import Image, ImageFile
 
 from vmesh.codec import layout
 from vmesh.codec.metadata import read_metadata
+from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
 from vmesh.errors import FormatError, LimitError, VmeshError
+from vmesh.formats.exif import EXIF_START
 from vmesh.formats.picture import picture_of
-from vmesh.formats.raster import rescale
-from vmesh.limits import DEFAULT_LIMITS
+from vmesh.limits import DEFAULT_LIMITS, PLAIN_DEPTH
 from vmesh.mesh import Metadata
 
 FORMAT: Final = "VMESH"
@@ -27,7 +28,6 @@ MIME_TYPE: Final = "image/vnd.vmesh"
 
 _MODES: Final = {1: "L", 3: "RGB", 4: "RGBA"}
 _DEEP_GREY: Final = "I;16"
-_EXIF_START: Final = b"Exif\0\0"  # as Pillow keeps it, and a file does not
 _MOST_SAMPLES: Final = 4  # per pixel and direction of a smaller picture
 
 
@@ -53,7 +53,7 @@ class VmeshImageFile(ImageFile.ImageFile):
             header, _ = layout.read_header(self._data)
         except FormatError as error:
             raise SyntaxError(str(error)) from None
-        is_deep_grey = header.n_components == 1 and header.depth > layout.PLAIN_DEPTH
+        is_deep_grey = header.n_components == 1 and header.depth > PLAIN_DEPTH
         self._mode = _DEEP_GREY if is_deep_grey else _MODES[header.n_components]
         self._canvas = self._size = header.width, header.height
         self._is_drawn = False
@@ -145,7 +145,7 @@ def _metadata_of(data: bytes) -> Metadata:
 
 def _info_of(metadata: Metadata) -> dict[str, bytes]:
     """Metadata by Pillow's names."""
-    exif = _EXIF_START + metadata.exif if metadata.exif else b""
+    exif = EXIF_START + metadata.exif if metadata.exif else b""
     named = {"icc_profile": metadata.icc, "exif": exif, "xmp": metadata.xmp}
     return {name: block for name, block in named.items() if block}
 

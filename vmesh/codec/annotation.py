@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from vmesh.codec import layout
 from vmesh.errors import FormatError
+from vmesh.limits import PLAIN_DEPTH
 
 
 class Field(NamedTuple):
@@ -63,15 +64,16 @@ def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:
     yield 1, f"version {layout.version_name(version)}"
     layout.check_version(version)
     form, components, end = layout.read_form(data, at + 1)
+    is_deep = end > at + 2
     n_components = (components & 3) + 1
     kind = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
-    if end > at + 2:
-        kind = "deep"
     triangles = layout.CONNECTIVITY_NAMES.get(form >> 6, "unknown")
-    yield 1, f"{kind}, subdivision {form >> 2 & 15}, {triangles} triangles"
-    if end > at + 2:
-        kind = layout.COMPONENT_NAMES.get(n_components, f"{n_components} components")
-        yield 1, f"{kind} of {layout.PLAIN_DEPTH + (components >> 2)} bits"
+    yield (
+        1,
+        f"{'deep' if is_deep else kind}, subdivision {form >> 2 & 15}, {triangles} triangles",
+    )
+    if is_deep:
+        yield 1, f"{kind} of {PLAIN_DEPTH + (components >> 2)} bits"
     at = end
     for name in ("width", "height", "vertices", *["colour step"] * n_components):
         number, end = layout.read_varint(data, at, "header")

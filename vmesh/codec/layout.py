@@ -26,7 +26,13 @@ from dataclasses import dataclass
 from typing import Final
 
 from vmesh.errors import FormatError
-from vmesh.limits import MAX_DEPTH, MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION
+from vmesh.limits import (
+    MAX_DEPTH,
+    MAX_LATTICE_SIDE,
+    MAX_SIDE,
+    MAX_SUBDIVISION,
+    PLAIN_DEPTH,
+)
 
 SIGNATURE: Final = b"\x8bVM\r\n"
 VERSION: Final = (1, 0)
@@ -46,7 +52,6 @@ CONNECTIVITY_NAMES: Final = {
 }
 CHUNK_NAMES: Final = {MESH_TAG: "mesh", **{tag: name for name, tag in METADATA_TAGS.items()}}
 
-PLAIN_DEPTH: Final = 8
 _DEEP: Final = 1  # in place of the components: they follow, with the depth
 _CHECKSUM = struct.Struct("<I")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]")
@@ -115,13 +120,12 @@ class Header:
     def pack(self) -> bytes:
         """Bytes of signature and header, with their checksum."""
         version = VERSION[0] << 4 | VERSION[1]
-        components = self.n_components - 1
-        form = bytes([components | self.subdivision << 2 | self.connectivity << 6])
-        if self.depth != PLAIN_DEPTH:
-            depth = components | (self.depth - PLAIN_DEPTH) << 2
-            form = bytes([_DEEP | self.subdivision << 2 | self.connectivity << 6, depth])
+        components = self.n_components - 1 | (self.depth - PLAIN_DEPTH) << 2
+        is_deep = self.depth != PLAIN_DEPTH
+        form = (_DEEP if is_deep else components) | self.subdivision << 2 | self.connectivity << 6
+        first = bytes([version, form, components] if is_deep else [version, form])
         numbers = (self.width, self.height, self.n_vertices, *self.steps)
-        return _checked(SIGNATURE + bytes([version]) + form + b"".join(map(pack_varint, numbers)))
+        return _checked(SIGNATURE + first + b"".join(map(pack_varint, numbers)))
 
 
 def pack_varint(number: int) -> bytes:

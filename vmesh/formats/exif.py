@@ -7,8 +7,9 @@ from typing import Any, Final
 from PIL import Image
 from PIL.TiffImagePlugin import IFDRational as Rational
 
-__all__ = ["Rational", "read_exif"]
+__all__ = ["EXIF_START", "Rational", "read_exif"]
 
+EXIF_START: Final = b"Exif\0\0"  # as Pillow and JPEG have it, and a .vmesh file does not
 _DETAILS: Final = 0x8769  # tag of the second directory, with the camera's entries
 
 
@@ -18,7 +19,7 @@ def read_exif(block: bytes) -> dict[int, Any]:
         return {}
     exif = Image.Exif()
     try:
-        exif.load(b"Exif\0\0" + block)
+        exif.load(EXIF_START + block)
         return {**exif.get_ifd(_DETAILS), **exif}
     except Exception:  # Pillow fails on blocks that make no sense with errors of any kind
         return {}

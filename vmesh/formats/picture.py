@@ -11,8 +11,10 @@ import numpy as np
 from PIL import Image, ImageOps
 
 from vmesh.arrays import SampleArray, UInt8Array
+from vmesh.color_lattice import rescale
 from vmesh.errors import ImageError
-from vmesh.formats.raster import fits_icc, rescale
+from vmesh.formats.exif import EXIF_START
+from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata
 
@@ -137,7 +139,7 @@ def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
     n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
         icc=profile if fits_icc(profile, n_components) else b"",
-        exif=exif.removeprefix(b"Exif\0\0"),  # which belongs to JPEG
+        exif=exif.removeprefix(EXIF_START),
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )
 

@@ -10,6 +10,8 @@ import numpy as np
 from PIL import Image
 
 from vmesh.arrays import Int32Array, Int64Array, SampleArray
+from vmesh.color_lattice import rescale
+from vmesh.formats.exif import EXIF_START
 from vmesh.kernels.scanline import SUBPIXEL, draw, measure
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Matrix, Mesh, Metadata, Placement
@@ -154,7 +156,7 @@ def write_raster(
     if format_name in ("JPEG", "WEBP"):
         options["quality"] = quality
     if metadata is not None:
-        exif = b"Exif\0\0" + metadata.exif  # as JPEG wants it, and Pillow for all formats
+        exif = EXIF_START + metadata.exif
         if metadata.exif and _takes_exif(format_name, image.mode, exif):
             options["exif"] = exif
         if fits_icc(metadata.icc, len(image.getbands())):
@@ -213,15 +215,6 @@ def scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
     numerators = 2 * mesh.vertices.astype(np.int64) * (np.array(size) * SUBPIXEL) + canvas
     positions: Int64Array = numerators // (2 * canvas)
     return positions
-
-
-def rescale(samples: SampleArray, depth: int, n_bits: int) -> SampleArray:
-    """Samples of a number of bits in another number of bits, 8 or 16, rounded."""
-    if depth == n_bits:
-        return samples
-    largest, wanted = (1 << depth) - 1, (1 << n_bits) - 1
-    wide = (2 * wanted * samples.astype(np.int64) + largest) // (2 * largest)
-    return wide.astype(np.uint8 if n_bits == 8 else np.uint16)
 
 
 def with_alpha(colors: SampleArray, opaque: int = 255) -> SampleArray:
