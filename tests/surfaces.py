@@ -48,13 +48,13 @@ def open_surface(
     n_edges, more = triangles.size, 6 * n_spare
     edges = directed_edges(triangles)
     twins = [edges.get((v, u), -1) for u, v in edges]
-    leaving = np.full(len(vertices) + n_spare, -1, dtype=np.int32)
-    leaving[triangles.ravel()] = np.arange(n_edges, dtype=np.int32)
+    leaving = np.full(len(vertices) + n_spare, -1, dtype=np.int64)
+    leaving[triangles.ravel()] = np.arange(n_edges)
     surface = Surface(
         points=np.concatenate([vertices, np.zeros((n_spare, 2))]).astype(np.int64),
         colors=np.concatenate([colors, np.zeros((n_spare, colors.shape[1]))]),
-        origin=np.concatenate([triangles.ravel(), np.full(more, -1)]).astype(np.int32),
-        twin=np.array([*twins, *[-1] * more], dtype=np.int32),
+        origin=np.concatenate([triangles.ravel(), np.full(more, -1)]).astype(np.int64),
+        twin=np.array([*twins, *[-1] * more], dtype=np.int64),
         leaving=leaving,
         errors=np.zeros(len(triangles) + 2 * n_spare),
         restless=np.ones(len(vertices) + n_spare, dtype=bool),
@@ -72,8 +72,7 @@ def measure_all(surface: Surface, image: UInt8Array) -> float:
 def triangles_of(surface: Surface) -> Int32Array:
     """Triangles in use, shape (m, 3), int32."""
     triangles = surface.origin.reshape(-1, 3)
-    result: Int32Array = triangles[triangles[:, 0] >= 0]
-    return result
+    return triangles[triangles[:, 0] >= 0].astype(np.int32)
 
 
 def check_surface(surface: Surface, width: int, height: int) -> None:

@@ -47,16 +47,13 @@ def find_flips(mesh: Mesh) -> Flips | None:
 
     None if they are too many for flips to be a good way of coding.
     """
-    origin = mesh.triangles.reshape(-1).copy()
+    # A copy: the mesh's own arrays are read-only, for which kernels would be compiled once more.
+    triangles = mesh.triangles.copy()
+    origin = triangles.ravel()
+    twins = find_twins(triangles, mesh.n_vertices)
     room = min(_MAX_FLIPS * mesh.n_vertices, entropy.MAX_FLIPS * origin.size)
     created, removed = np.zeros((2, room), dtype=np.int64)
-    count = flip_to_delaunay(
-        mesh.vertices.astype(np.int64),
-        origin,
-        find_twins(mesh.triangles, mesh.n_vertices),
-        created,
-        removed,
-    )
+    count = flip_to_delaunay(mesh.vertices.astype(np.int64), origin, twins, created, removed)
     if count < 0:
         return None
     # Read backwards: the edge that was created goes.

@@ -253,8 +253,8 @@ class Remesher:
     def _refit(self) -> None:
         """Fit all colours anew and measure what error is left."""
         surface = self._surface
-        triangles = surface.origin.reshape(-1, 3)
-        triangles = np.ascontiguousarray(triangles[triangles[:, 0] >= 0])
+        corners = surface.origin.reshape(-1, 3)
+        triangles = corners[corners[:, 0] >= 0].astype(np.int32)
         surface.colors[:], _ = fit_components(
             self._picture,
             self._weights,
@@ -308,13 +308,13 @@ def _open_surface(
     n_points, n_triangles = len(points), len(triangles)
     n_edges = 3 * n_triangles
     more = 6 * n_spare
-    leaving = np.full(n_points + n_spare, -1, dtype=np.int32)
-    leaving[triangles.ravel()] = np.arange(n_edges, dtype=np.int32)
+    leaving = np.full(n_points + n_spare, -1, dtype=np.int64)
+    leaving[triangles.ravel()] = np.arange(n_edges, dtype=np.int64)
     return Surface(
         points=np.concatenate([points, np.zeros((n_spare, 2), dtype=np.int64)]),
         colors=np.concatenate([colors, np.zeros((n_spare, colors.shape[1]))]),
-        origin=np.concatenate([triangles.ravel(), np.full(more, -1, dtype=np.int32)]),
-        twin=np.concatenate([find_twins(triangles, n_points), np.full(more, -1, dtype=np.int32)]),
+        origin=np.concatenate([triangles.ravel(), np.full(more, -1, dtype=np.int64)]),
+        twin=np.concatenate([find_twins(triangles, n_points), np.full(more, -1, dtype=np.int64)]),
         leaving=leaving,
         errors=np.zeros(n_triangles + 2 * n_spare),
         restless=np.ones(n_points + n_spare, dtype=np.bool_),

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Int32Array, Int64Array
+from vmesh.arrays import BoolArray, Int64Array
 
 _BAND: Final = 128  # rows of half pixels; not to be changed with the number of threads
 _SHARE: Final = 4096  # items of a job that needs no order
@@ -47,7 +47,7 @@ def shares(n_items: int) -> list[tuple[int, int]]:
     return [(first, min(first + _SHARE, n_items)) for first in range(0, n_items, _SHARE)]
 
 
-def waves(points: Int64Array, triangles: Int32Array) -> list[list[Int64Array]]:
+def waves(points: Int64Array, triangles: Int64Array) -> list[list[Int64Array]]:
     """Vertices in groups that can be moved at the same time, wave by wave.
 
     Parameters
@@ -55,7 +55,7 @@ def waves(points: Int64Array, triangles: Int32Array) -> list[list[Int64Array]]:
     points : ndarray
         Shape (n, 2), int64, in half pixels.
     triangles : ndarray
-        Shape (m, 3), int32.
+        Shape (m, 3), int64.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def waves(points: Int64Array, triangles: Int32Array) -> list[list[Int64Array]]:
     return result
 
 
-def _touches_another(bands: Int64Array, edges: Int32Array) -> BoolArray:
+def _touches_another(bands: Int64Array, edges: Int64Array) -> BoolArray:
     """Whether an edge joins each vertex to another band."""
     touches = np.zeros(len(bands), dtype=np.bool_)
     touches[edges[bands[edges[:, 0]] != bands[edges[:, 1]]]] = True

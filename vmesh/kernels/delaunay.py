@@ -47,7 +47,7 @@ COINCIDENT = -1
 TOO_MANY_FLIPS = -2
 
 
-@kernel
+@inner_kernel
 def cross(ax: int, ay: int, bx: int, by: int, cx: int, cy: int) -> int:
     """Doubled signed area of a, b, c: positive where they turn from the x axis towards y."""
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
@@ -82,7 +82,7 @@ def in_circle(ax: int, ay: int, bx: int, by: int, cx: int, cy: int, dx: int, dy:
     return 1 if (low & 0xFFFFF) > 0 else 0
 
 
-@kernel
+@inner_kernel
 def must_flip(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
     """Whether the diagonal b-c of the quad with apexes a and d has to become a-d.
 
@@ -101,7 +101,7 @@ def must_flip(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
     return side > 0 or (side == 0 and max(a, d) > max(b, c))
 
 
-@kernel
+@inner_kernel
 def link(twin: Int32Array, e: int | np.int64, f: int | np.int64) -> None:
     """Make two half-edges each other's twin; either may be -1."""
     if e >= 0:
@@ -110,7 +110,7 @@ def link(twin: Int32Array, e: int | np.int64, f: int | np.int64) -> None:
         twin[f] = e
 
 
-@kernel
+@inner_kernel
 def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
     """Turn the diagonal of the two triangles at half-edge e.
 
@@ -132,7 +132,7 @@ def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
     # e: d -> c, e_next: c -> a, e_prev: a -> d;  f: a -> b, f_next: b -> d, f_prev: d -> a.
 
 
-@kernel
+@inner_kernel
 def legalize(
     points: Int64Array,
     origin: Int32Array,
@@ -176,7 +176,7 @@ def legalize(
     return n_flips
 
 
-@kernel
+@inner_kernel
 def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
     """Number in 0 .. n_keys - 1 that grows with the direction of (dx, dy) around the circle."""
     length = abs(dx) + abs(dy)
@@ -249,7 +249,7 @@ def sweep(
     for v in (a, b, c):
         hull_hash[pseudo_angle(points[v, 0] - cx, points[v, 1] - cy, n_keys)] = v
     last = c
-    n_edges = 3
+    n_edges = int(np.int64(3))  # a literal is a type of its own, compiled apart
     flips_left = FLIPS + FLIPS_PER_POINT * n_points
 
     for i in range(2, n_points):

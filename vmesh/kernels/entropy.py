@@ -25,7 +25,7 @@ from math import comb
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.kernels.jit import kernel
+from vmesh.kernels.jit import inner_kernel, kernel
 
 # Fields of the coder's state, an int64 array of N_FIELDS.
 DECODING = 0  # 1 when reading, 0 when writing
@@ -100,7 +100,7 @@ FLIPS_SEEN = 16
 SPLIT_SEEN = 16
 
 
-@kernel
+@inner_kernel
 def write_byte(coder: Int64Array, data: UInt8Array, byte: int) -> None:
     """Append a byte; beyond the room in `data` only the position advances."""
     if coder[POSITION] < data.shape[0]:
@@ -108,7 +108,7 @@ def write_byte(coder: Int64Array, data: UInt8Array, byte: int) -> None:
     coder[POSITION] += 1
 
 
-@kernel
+@inner_kernel
 def read_byte(coder: Int64Array, data: UInt8Array) -> np.int64:
     """Next byte of the stream; zeros beyond its end."""
     position = coder[POSITION]
@@ -116,7 +116,7 @@ def read_byte(coder: Int64Array, data: UInt8Array) -> np.int64:
     return np.int64(data[position]) if position < data.shape[0] else np.int64(0)
 
 
-@kernel
+@inner_kernel
 def shift_low(coder: Int64Array, data: UInt8Array) -> None:
     """Move the top byte of the low end out, passing on a carry."""
     low = coder[LOW]
@@ -211,7 +211,7 @@ def code_number(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, n
     return value - 1
 
 
-@kernel
+@inner_kernel
 def code_split(
     coder: Int64Array,
     data: UInt8Array,
@@ -313,7 +313,7 @@ def code_positions(
             size += 1
 
 
-@kernel
+@inner_kernel
 def sites(x: int, y: int, across: int, down: int, columns: int, rows: int) -> int:
     """Number of lattice sites in a box."""
     width = max(0, min(x + (1 << across), columns) - x)
@@ -432,7 +432,7 @@ def code_levels(
     return OK
 
 
-@kernel
+@inner_kernel
 def weigh(levels: Int32Array, v: int, parents: Int32Array, weights: Int64Array) -> None:
     """Fill in the weights of a vertex's parents by how much they differ in the first component."""
     for j in range(parents.shape[0]):
@@ -440,7 +440,7 @@ def weigh(levels: Int32Array, v: int, parents: Int32Array, weights: Int64Array) 
         weights[j] = max(4096 // (1 + 2 * difference), 1)
 
 
-@kernel
+@inner_kernel
 def spread_of(
     levels: Int32Array, z: int, parents: Int32Array, weights: Int64Array, prediction: np.int64
 ) -> int:
@@ -488,7 +488,7 @@ def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, siz
     return N_UNARY - 1 + value
 
 
-@kernel
+@inner_kernel
 def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
     """Turn the diagonal of the two triangles at half-edge e; the same as that of ``delaunay``."""
     f = twin[e]
@@ -508,7 +508,7 @@ def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
     twin[f_prev] = e_prev
 
 
-@kernel
+@inner_kernel
 def cotangent(points: Int64Array, a: int, b: int, c: int) -> tuple[int, int]:
     """Cotangent of the angle at a in sixteenths, rounded down, and the doubled area of a, b, c."""
     bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]

@@ -28,11 +28,11 @@ Delaunay triangulations", 1999: filling a hole by ears.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Float64Array, Int32Array, Int64Array, UInt8Array
+from vmesh.arrays import BoolArray, Float64Array, Int64Array, UInt8Array
 from vmesh.kernels.jit import inner_kernel, kernel
 
 MAX_RING = 48
@@ -47,6 +47,9 @@ _MAX_STEPS = 8
 # Columns of a row are found in floating point. They are fractions with denominators of at most
 # 2**18, so this bias decides on which side of an edge a pixel's centre lies without error.
 _BIAS = 1e-7
+# A literal would be a type of its own, for which a kernel is compiled once more.
+_N_SIDES: Any = np.int64(3)
+_ROOT: Any = np.int64(0)
 # Holds a vertex whose triangles cover next to no pixel's centre, in pixels.
 _RIDGE = 1e-2
 # An edit has to gain at least this much squared error.
@@ -63,9 +66,9 @@ class Surface(NamedTuple):
     colors : ndarray
         Shape (n, c), float64.
     origin, twin : ndarray
-        Shape (3 m,), int32.
+        Shape (3 m,), int64.
     leaving : ndarray
-        Shape (n,), int32: a half-edge that leaves each vertex.
+        Shape (n,), int64: a half-edge that leaves each vertex.
     errors : ndarray
         Shape (m,), float64: squared error of each triangle.
     restless : ndarray
@@ -74,9 +77,9 @@ class Surface(NamedTuple):
 
     points: Int64Array
     colors: Float64Array
-    origin: Int32Array
-    twin: Int32Array
-    leaving: Int32Array
+    origin: Int64Array
+    twin: Int64Array
+    leaving: Int64Array
     errors: Float64Array
     restless: BoolArray
 
@@ -84,11 +87,11 @@ class Surface(NamedTuple):
 class Room(NamedTuple):
     """Arrays that the kernels write to on the way: the star of a vertex, its filling, and sums."""
 
-    ring: Int32Array
-    outer: Int32Array
-    star: Int32Array
-    places: Int32Array
-    ears: Int32Array
+    ring: Int64Array
+    outer: Int64Array
+    star: Int64Array
+    places: Int64Array
+    ears: Int64Array
     rows: Int64Array
     sums: Float64Array
     side_sums: Float64Array
@@ -98,11 +101,11 @@ class Room(NamedTuple):
 def make_room(height: int, n_components: int) -> Room:
     """Room for a picture of this height."""
     return Room(
-        ring=np.zeros(MAX_RING, np.int32),
-        outer=np.zeros(MAX_RING, np.int32),
-        star=np.zeros(MAX_RING, np.int32),
-        places=np.zeros(MAX_RING, np.int32),
-        ears=np.zeros((MAX_RING, 3), np.int32),
+        ring=np.zeros(MAX_RING, np.int64),
+        outer=np.zeros(MAX_RING, np.int64),
+        star=np.zeros(MAX_RING, np.int64),
+        places=np.zeros(MAX_RING, np.int64),
+        ears=np.zeros((MAX_RING, 3), np.int64),
         rows=np.zeros((height, 2), np.int64),
         sums=np.zeros(2 + n_components),
         side_sums=np.zeros((MAX_RING, 2 + n_components)),
@@ -325,7 +328,7 @@ def measure(surface: Surface, image: UInt8Array, room: Room, first: int, last: i
 
 
 @inner_kernel
-def link(twin: Int32Array, e: int, f: int) -> None:
+def link(twin: Int64Array, e: int, f: int) -> None:
     """Make two half-edges each other's twin; f may be -1."""
     twin[e] = f
     if f >= 0:
@@ -473,7 +476,7 @@ def remove(surface: Surface, image: UInt8Array, room: Room, v: int) -> int:
 
 
 @inner_kernel
-def sift(heap: Int32Array, place: Int32Array, costs: Float64Array, size: int, at: int) -> None:
+def sift(heap: Int64Array, place: Int64Array, costs: Float64Array, size: int, at: int) -> None:
     """Move the entry at a place of the heap up or down to where its cost belongs."""
     v = heap[at]
     while at > 0 and costs[v] < costs[heap[(at - 1) >> 1]]:
@@ -539,8 +542,8 @@ def thin(
         Vertices that cost more than this squared error stay.
     """
     n_points = surface.points.shape[0]
-    heap = np.empty(n_points, np.int32)
-    place = np.empty(n_points, np.int32)
+    heap = np.empty(n_points, np.int64)
+    place = np.empty(n_points, np.int64)
     outdated = np.zeros(n_points, np.bool_)
     left = 0
     for v in range(n_points):
@@ -566,7 +569,7 @@ def thin(
             left -= 1
             heap[0] = heap[left]
             place[heap[0]] = 0
-        sift(heap, place, costs, left, 0)
+        sift(heap, place, costs, left, _ROOT)
     return removed
 
 
@@ -607,7 +610,7 @@ def best_insertion(
     surface: Surface, image: UInt8Array, room: Room, t: int
 ) -> tuple[float, int, int]:
     """What a new vertex in triangle t would gain, and where: its middle or its worst pixel."""
-    points, ring = surface.points, room.ring
+    points, errors, ring = surface.points, surface.errors, room.ring
     for i in range(4):
         ring[i] = surface.origin[3 * t + i % 3]
     best, best_x, best_y = -np.inf, 0, 0
@@ -618,7 +621,7 @@ def best_insertion(
             y = (points[ring[0], 1] + points[ring[1], 1] + points[ring[2], 1]) // 6 * 2 + 1
         else:
             x, y = worst_pixel(surface, image, room, ring[0], ring[1], ring[2])
-        gain = surface.errors[t] - error_at(surface, image, room, x, y, 3, surface.errors[t] - best)
+        gain = errors[t] - error_at(surface, image, room, x, y, _N_SIDES, errors[t] - best)
         if gain > best:
             best, best_x, best_y = gain, x, y
     return best, best_x, best_y
@@ -727,7 +730,7 @@ def insert(
         for k in range(4):
             room.ring[k] = surface.origin[3 * t + k % 3]
         surface.points[v, 0], surface.points[v, 1] = places[t, 0], places[t, 1]
-        error_at(surface, image, room, places[t, 0], places[t, 1], 3, np.inf)
+        error_at(surface, image, room, places[t, 0], places[t, 1], _N_SIDES, np.inf)
         for z in range(surface.colors.shape[1]):
             surface.colors[v, z] = surface.colors[room.ring[0], z]
         take_color(surface, room, v)

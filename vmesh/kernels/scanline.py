@@ -32,7 +32,7 @@ from vmesh.arrays import (
     UInt8Array,
     UInt16Array,
 )
-from vmesh.kernels.jit import kernel
+from vmesh.kernels.jit import inner_kernel, kernel
 
 SUBPIXEL = 256
 """Units of the vertex coordinates in a pixel."""
@@ -43,13 +43,13 @@ _LARGEST_FLOAT_DET = 1 << 36
 _BIAS = 0.5 + 2.0**-40
 
 
-@kernel
+@inner_kernel
 def row_at(y: int) -> int:
     """First row whose centre is at or below a height in 1/256 pixel."""
     return (y + 127) >> 8
 
 
-@kernel
+@inner_kernel
 def corners(vertices: Int64Array, i: int, j: int, k: int) -> tuple[int, int, int, int, int, int]:
     """Corner i of a triangle, and the corners j and k relative to it."""
     x, y = vertices[i, 0], vertices[i, 1]
@@ -58,7 +58,7 @@ def corners(vertices: Int64Array, i: int, j: int, k: int) -> tuple[int, int, int
     return x, y, x1, y1, x2, y2
 
 
-@kernel
+@inner_kernel
 def column_at(ax: int, ay: int, bx: int, by: int, y: int) -> tuple[int, int, int, int, int]:
     """Where the edge a-b, a above b, meets the centres of row y.
 
@@ -74,7 +74,7 @@ def column_at(ax: int, ay: int, bx: int, by: int, y: int) -> tuple[int, int, int
     return quotient, numerator - quotient * divisor, divisor, step, (run - step * rise) << 8
 
 
-@kernel
+@inner_kernel
 def spans(
     vertices: Int64Array,
     triangle: Int32Array,
@@ -158,7 +158,7 @@ def measure(vertices: Int64Array, triangles: Int32Array, height: int) -> tuple[i
     return area, n_rows
 
 
-@kernel
+@inner_kernel
 def gradient(
     c0: np.int64, c1: np.int64, c2: np.int64, x0: int, y0: int, x1: int, y1: int, x2: int, y2: int
 ) -> tuple[np.int64, np.int64, np.int64]:
@@ -173,7 +173,7 @@ def gradient(
     return origin, right << 8, down << 8
 
 
-@kernel
+@inner_kernel
 def fill_float(
     bases: Int64Array, rows: Int64Array, first: int, last: int, det: int, raster: UInt8Array
 ) -> None:
@@ -224,7 +224,7 @@ def fill_float(
                 at += one
 
 
-@kernel
+@inner_kernel
 def fill_exact(
     bases: Int64Array, rows: Int64Array, first: int, last: int, det: int, raster: UInt8Array
 ) -> None:
