@@ -107,7 +107,7 @@ def _check_tree(tree: dict[str, Any], limits: Limits) -> None:
     accessors = tree["accessors"]
     if any("sparse" in item or "bufferView" not in item for item in accessors):
         raise MeshError("it has sparse accessors, which are not read")
-    n_entries = sum(int(item["count"]) for item in accessors)
+    n_entries = sum(abs(int(item["count"])) for item in accessors)
     if n_entries > limits.max_vertices * _ENTRIES_PER_VERTEX:
         raise LimitError(
             f"the file has {n_entries} entries, but the limit is {_ENTRIES_PER_VERTEX} "
