@@ -117,7 +117,8 @@ def _block(
     if is_bound and arguments.args and arguments.args[0].arg in ("self", "cls"):
         del arguments.args[0]
     result = f" -> {ast.unparse(definition.returns)}" if definition.returns else ""
-    inner = re.sub(r"(: [^=,]*)=", r"\1 = ", ast.unparse(arguments))
+    # Spaces and quotes as ruff has them, which formats code in Markdown too.
+    inner = re.sub(r"(: [^=,]*)=", r"\1 = ", ast.unparse(arguments)).replace("'", '"')
     line = f"{name}{'' if is_property else f'({inner})'}{result}"
     if len(line) > _LONGEST_LINE:
         inner = re.sub(r", (?![^\[(]*[\])])", ",\n    ", inner)
