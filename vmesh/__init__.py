@@ -6,7 +6,8 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     vmesh.dump(mesh, "photo.vmesh")        Mesh -> file;  dumps gives the bytes
     mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
-    vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG ... by the file's name
+    vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG, PLY ... by the file's name
+    mesh = vmesh.import_mesh("mesh.ply")   PLY, OBJ, glTF or text -> Mesh
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
     vmesh.register()                       Image.open and Image.save of Pillow know .vmesh
 """
@@ -27,10 +28,12 @@ if TYPE_CHECKING:
         FormatError,
         ImageError,
         LimitError,
+        MeshError,
         PartialFileWarning,
         VmeshError,
     )
     from vmesh.formats.cairo_pdf import paint_mesh
+    from vmesh.formats.mesh_import import import_mesh
     from vmesh.formats.raster import render
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
@@ -46,6 +49,7 @@ __all__ = [
     "LimitError",
     "Limits",
     "Mesh",
+    "MeshError",
     "Metadata",
     "PartialFileWarning",
     "Settings",
@@ -54,6 +58,7 @@ __all__ = [
     "dumps",
     "encode",
     "export",
+    "import_mesh",
     "load",
     "loads",
     "paint_mesh",
@@ -68,6 +73,7 @@ _HOMES: Final = {
     "LimitError": "vmesh.errors",
     "Limits": "vmesh.limits",
     "Mesh": "vmesh.mesh",
+    "MeshError": "vmesh.errors",
     "Metadata": "vmesh.mesh",
     "PartialFileWarning": "vmesh.errors",
     "Settings": "vmesh.encoder.settings",
@@ -76,6 +82,7 @@ _HOMES: Final = {
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",
     "export": "vmesh.formats.registry",
+    "import_mesh": "vmesh.formats.mesh_import",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",
     "paint_mesh": "vmesh.formats.cairo_pdf",

@@ -6,7 +6,8 @@
     ├── VmeshError               everything this library raises on purpose about data
     │   ├── FormatError          the bytes are not a conforming .vmesh file (also a ValueError)
     │   ├── LimitError           conforming, but more than the caller allows
-    │   └── ImageError           the file is not a photograph that can be read
+    │   ├── ImageError           the file is not a photograph that can be read
+    │   └── MeshError            another program's mesh cannot be read (also a ValueError)
     ├── ValueError, TypeError    a wrong argument
     ├── OSError                  the operating system refused
     └── PartialFileWarning       not raised, but shown: a file that was cut off is read in part
@@ -45,6 +46,10 @@ class LimitError(VmeshError):
 
 class ImageError(VmeshError):
     """The file is not a photograph that can be read."""
+
+
+class MeshError(VmeshError, ValueError):
+    """The file of another program is not a mesh that can be read."""
 
 
 class PartialFileWarning(UserWarning):

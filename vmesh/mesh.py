@@ -13,7 +13,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from importlib import import_module
 from operator import index
+from types import ModuleType
 from typing import Any, Final
 
 import numpy as np
@@ -288,6 +290,16 @@ class Mesh:
             f"{self.n_triangles} triangles, {self.n_components} colour components)"
         )
 
+    def _repr_png_(self) -> bytes:
+        """The picture, for notebooks."""
+        png: bytes = _preview().png_preview(self)
+        return png
+
+    def _repr_svg_(self) -> str | None:
+        """The drawing, for notebooks, if it has few triangles."""
+        svg: str | None = _preview().svg_preview(self)
+        return svg
+
     def _check_header(self) -> None:
         if not (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE):
             raise ValueError(
@@ -349,6 +361,11 @@ class Mesh:
             raise ValueError("an inner edge belongs to only one triangle")
         if not np.bincount(self.triangles.ravel(), minlength=self.n_vertices).all():
             raise ValueError("a vertex belongs to no triangle")
+
+
+def _preview() -> ModuleType:
+    """What draws meshes in notebooks, by its name: the mesh itself depends on no floor above it."""
+    return import_module("vmesh.formats.preview")
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,8 @@ COMMANDS: Final = {
     "to-svg": ("to_svg", "Turn a .vmesh file or a photograph into SVG."),
     "to-pdf": ("to_pdf", "Turn a .vmesh file or a photograph into PDF."),
     "to-html": ("to_html", "Turn a .vmesh file or a photograph into a page for browsers."),
+    "export": ("export_mesh", "Turn a .vmesh file or a photograph into a mesh for other programs."),
+    "import": ("import_mesh", "Turn a mesh of another program into a .vmesh file."),
     "info": ("info", "Say what is in a .vmesh file."),
     "validate": ("validate", "Say all that is wrong with a .vmesh file."),
     "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),

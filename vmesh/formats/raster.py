@@ -72,7 +72,7 @@ def render(
     placement = Placement.of(
         mesh.width, mesh.height, (1, 0, 0, 1, 0, 0) if transform is None else transform
     )
-    columns, rows = _raster_size(placement.width, placement.height, scale, width, height)
+    columns, rows = raster_size(placement.width, placement.height, scale, width, height)
     supersample = index(supersample)
     if not 1 <= supersample <= MAX_SUPERSAMPLE:
         raise ValueError(f"expected a supersampling of 1 to {MAX_SUPERSAMPLE}, got {supersample}")
@@ -179,14 +179,14 @@ def fits_icc(profile: bytes, n_components: int) -> bool:
     return profile[16:20] == _ICC_SPACES[n_components]
 
 
-def _raster_size(
-    canvas_width: int,
-    canvas_height: int,
+def raster_size(
+    canvas_width: float,
+    canvas_height: float,
     scale: float | None,
     width: int | None,
     height: int | None,
 ) -> tuple[int, int]:
-    """Columns and rows of the result."""
+    """Columns and rows of a raster of a canvas, by a scale or a size as `render` takes them."""
     if scale is not None and (width is not None or height is not None):
         raise ValueError("expected a scale or a size, not both")
     if max(width or 0, height or 0) > MAX_SIDE:
@@ -205,7 +205,7 @@ def _raster_size(
     if columns <= 0 or rows <= 0:
         raise ValueError(f"expected a raster of at least one pixel, got {columns} x {rows}")
     if max(columns, rows) > MAX_SIDE:
-        raise ValueError(f"a raster side of {max(columns, rows):.0f} pixels is over {MAX_SIDE}")
+        raise ValueError(f"a raster side of {max(columns, rows):.8g} pixels is over {MAX_SIDE}")
     return max(1, round(columns)), max(1, round(rows))
 
 

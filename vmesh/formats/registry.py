@@ -1,4 +1,4 @@
-"""The table of output formats, by the ending of a file's name."""
+"""The tables of formats that are written and read, by the ending of a file's name."""
 
 from __future__ import annotations
 
@@ -47,8 +47,14 @@ FORMATS: Final = {
     ".pdf": Format("vmesh.formats.pdf", "write_pdf"),
     ".html": Format("vmesh.formats.html", "write_html"),
     ".htm": Format("vmesh.formats.html", "write_html"),
+    ".ply": Format("vmesh.formats.mesh_files", "write_ply"),
+    ".obj": Format("vmesh.formats.mesh_files", "write_obj"),
+    ".glb": Format("vmesh.formats.mesh_files", "write_glb"),
+    ".txt": Format("vmesh.codec.text", "write_text"),
 }
 
+# Those that hold a mesh as other programs know it, and are read too.
+MESH_SUFFIXES: Final = (".ply", ".obj", ".glb", ".txt")
 RASTER_SUFFIXES: Final = tuple(suffix for suffix, f in FORMATS.items() if f.is_raster)
 
 
@@ -80,7 +86,11 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
 
 
 def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
-    """Write a mesh as PNG, JPEG, WebP, TIFF, PAM, SVG, PDF or HTML, by the ending of the name.
+    """Write a mesh as pixels, drawing, page or other programs' mesh, by the ending of the name.
+
+    PNG, JPEG, WebP, TIFF and PAM; SVG, PDF and HTML; PLY, OBJ, glTF (``.glb``) and the canonical
+    text (``.txt``). In PLY, OBJ and glTF a pixel is a unit, y points up, triangles are
+    counter-clockwise, z is 0, and colours have 8 bits.
 
     Parameters
     ----------
@@ -90,7 +100,7 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
     **options
         For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
         with a ``tolerance`` in levels, or "flat", and ``merge``; for PDF ``page_width``, such as
-        "210mm", and ``backend``, "native" or "cairo".
+        "210mm", and ``backend``, "native" or "cairo"; for PLY ``ascii``, true for text.
     """
     target = format_of(path)
     with atomic_output(path) as stream:

@@ -1,0 +1,37 @@
+"""``vmesh export``: a .vmesh file or a photograph -> a mesh for other programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.streams import STANDARD, check_suffix
+from vmesh.cli.vector import convert
+from vmesh.formats.registry import MESH_SUFFIXES, format_of
+
+
+@click.command("export")
+@click.argument("source", metavar="INPUT")
+@click.argument("target", metavar="OUTPUT")
+@click.option("--ascii", is_flag=True, help="PLY as text instead of binary.")
+@encoder_options
+@limit_options
+@quiet_option
+def command(source: str, target: str, ascii: bool, quiet: bool, **options: Any) -> None:
+    """Turn a .vmesh file, or a photograph, into a mesh for other programs, by the name of OUTPUT.
+
+    PLY, OBJ and glTF (.glb) with a colour at every vertex need trimesh: pip install trimesh. A
+    pixel is a unit, x points right, y up, and z is 0. A name that ends in .txt gets the canonical
+    text, to the last level. The options of the encoder apply to photographs.
+    """
+    settings, limits = take_settings(options), take_limits(options)
+    if target == STANDARD:
+        raise click.UsageError("expected a name for OUTPUT: its ending says the format")
+    check_suffix(target, MESH_SUFFIXES)
+    chosen: dict[str, Any] = {"ascii": True} if ascii else {}
+    if ascii and not target.lower().endswith(".ply"):
+        raise click.UsageError("--ascii is for PLY")
+    convert(source, target, format_of(target), settings, limits, quiet=quiet, **chosen)
