@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 import vmesh
+from vmesh.formats.page import make_page
 from vmesh.formats.picture import flatten, read_picture
 
 
@@ -154,6 +155,22 @@ def test_exif_that_makes_no_sense_costs_no_picture() -> None:
     data = saved(image, "JPEG", exif=b"Exif\0\0MM\0*\0\0\0\x08\xff\xff\x01\x12").getvalue()
     picture = read_picture(io.BytesIO(data))
     assert picture.array.shape == (6, 7, 3)
+
+
+@pytest.mark.parametrize("format_name", ["PNG", "JPEG", "TIFF", "BMP"])
+def test_the_density_that_a_picture_has_outside_of_exif_sets_the_page(format_name: str) -> None:
+    image = Image.fromarray(noise((30, 60, 3)))
+    picture = read_picture(saved(image, format_name, dpi=(300, 150)))
+    mesh = vmesh.encode(picture.array, metadata=picture.metadata, vertices=20, effort=1)
+    page = make_page(mesh)
+    assert (page.width, page.height) == pytest.approx((60 / 300 * 72, 30 / 150 * 72), rel=1e-3)
+
+
+@pytest.mark.parametrize("density", [{}, {"dpi": (72, 72)}])
+def test_a_density_that_says_nothing_costs_no_bytes(density: dict[str, tuple[int, int]]) -> None:
+    image = Image.fromarray(noise((6, 7, 3)))
+    for format_name in ("PNG", "JPEG"):
+        assert read_picture(saved(image, format_name, **density)).metadata.exif == b""
 
 
 def test_programs_are_not_started_for_postscript() -> None:

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Final
 
-from vmesh.formats.exif import Rational, read_exif
+from vmesh.formats.exif import (
+    CENTIMETRE,
+    INCH,
+    RESOLUTION_UNIT,
+    X_RESOLUTION,
+    Y_RESOLUTION,
+    Rational,
+    read_exif,
+)
 from vmesh.mesh import Mesh
 
 # Points in a unit of length.
@@ -16,8 +24,7 @@ _LENGTH: Final = re.compile(r"\s*(\d+\.?\d*|\.\d+)\s*([a-z]*)\s*")
 _LONGEST_SIDE: Final = 14_400  # units that a page may have, by what viewers accept
 _LARGEST_WIDTH: Final = 1e6  # points: 350 m
 
-_X_RESOLUTION, _Y_RESOLUTION, _RESOLUTION_UNIT = 282, 283, 296
-_POINTS_IN: Final = {2: 72.0, 3: 72.0 / 2.54}  # inch, centimetre, by EXIF's number
+_POINTS_IN: Final = {INCH: 72.0, CENTIMETRE: 72.0 / 2.54}
 _DENSEST: Final = 100.0  # pixels in a point that are believed: 7200 dpi
 
 
@@ -76,8 +83,8 @@ def points_of(length: str) -> float:
 def _points_per_pixel(mesh: Mesh) -> tuple[float, float]:
     """Points of a pixel's width and height, by EXIF's resolution; 1 where there is none."""
     exif = read_exif(mesh.metadata.exif)
-    inch = _POINTS_IN.get(exif.get(_RESOLUTION_UNIT, 2))
-    x, y = exif.get(_X_RESOLUTION), exif.get(_Y_RESOLUTION)
+    inch = _POINTS_IN.get(exif.get(RESOLUTION_UNIT, INCH))
+    x, y = exif.get(X_RESOLUTION), exif.get(Y_RESOLUTION)
     if inch is None or not (isinstance(x, Rational) and isinstance(y, Rational)):
         return 1.0, 1.0
     across, down = float(x) / inch, float(y) / inch

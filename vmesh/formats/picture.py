@@ -13,7 +13,7 @@ from PIL import Image, ImageOps
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.color_lattice import rescale
 from vmesh.errors import ImageError
-from vmesh.formats.exif import EXIF_START
+from vmesh.formats.exif import EXIF_START, INCH, RESOLUTION_UNIT, X_RESOLUTION, Y_RESOLUTION
 from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata
@@ -24,6 +24,7 @@ _FORMATS: Final = (
     *("TGA", "ICO", "PCX", "QOI", "SGI", "DIB"),
 )
 _OPENING: Final = threading.Lock()  # Pillow's own limit is a global variable
+_NO_DENSITY: Final = (72, 72)  # per inch: what is written where nobody knows
 _SIXTEEN_BIT: Final = ("I;16", "I;16L", "I;16B", "I;16N", "I")
 _WITH_ALPHA: Final = ("RGBA", "LA", "La", "PA", "RGBa")
 _OPAQUE: Final = ("RGB", "CMYK", "YCbCr", "LAB", "HSV", "RGBX", "P")
@@ -132,16 +133,25 @@ def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
     """What travels along; an ICC profile only if it fits the array's components."""
     profile = image.info.get("icc_profile") or b""
     xmp = image.info.get("xmp") or b""
-    try:
-        exif = image.getexif().tobytes() if len(image.getexif()) else b""
-    except Exception:  # a block that makes no sense is not worth the picture
-        exif = b""
     n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
         icc=profile if fits_icc(profile, n_components) else b"",
-        exif=exif.removeprefix(EXIF_START),
+        exif=_exif_of(image),
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )
+
+
+def _exif_of(image: Image.Image) -> bytes:
+    """The EXIF block, with the density that PNG and JFIF have elsewhere; empty if there is none."""
+    try:
+        exif = image.getexif()
+        density = image.info.get("dpi", _NO_DENSITY)
+        if X_RESOLUTION not in exif and tuple(map(round, density)) not in (_NO_DENSITY, (0, 0)):
+            exif[X_RESOLUTION], exif[Y_RESOLUTION] = (round(float(value), 2) for value in density)
+            exif[RESOLUTION_UNIT] = INCH
+        return exif.tobytes().removeprefix(EXIF_START) if len(exif) else b""
+    except Exception:  # a block that makes no sense is not worth the picture
+        return b""
 
 
 def flatten(array: SampleArray, depth: int | None = None) -> UInt8Array:
