@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 import vmesh
+from tests.pictures import ramp
 from vmesh.codec import layout
 from vmesh.metrics import psnr
 
@@ -130,6 +131,15 @@ def test_decode_writes_images_of_any_size(file: Path, tmp_path: Path, suffix: st
     succeed("decode", file, target, "--width", "300")
     with Image.open(target) as image:
         assert image.size == (300, 200)
+
+
+def test_the_longest_side_is_the_width_or_the_height(tmp_path: Path) -> None:
+    for width, height in ((60, 40), (40, 60)):
+        path = tmp_path / "mesh.vmesh"
+        vmesh.dump(vmesh.encode(ramp(height, width), vertices=9, effort=1), path)
+        succeed("decode", path, tmp_path / "out.png", "--longest-side", "90")
+        with Image.open(tmp_path / "out.png") as image:
+            assert image.size == (width * 3 // 2, height * 3 // 2)
 
 
 def test_decode_gives_the_native_raster(file: Path, tmp_path: Path) -> None:
@@ -404,6 +414,7 @@ def test_an_unknown_ending_is_wrong_usage(file: Path, tmp_path: Path) -> None:
         ("encode", COFFEE, "-", "--json"),
         ("encode", COFFEE),
         ("decode", COFFEE, "out.png", "--scale", "2", "--width", "10"),
+        ("decode", COFFEE, "out.png", "--longest-side", "9", "--height", "10"),
         ("decode", COFFEE, "out.png", "--transform", "1,2,3"),
         ("paint", COFFEE),
         ("--wrong",),

@@ -7,12 +7,13 @@ import io
 import os
 import re
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
+
+from tests.programs import place_vmesh
 
 _BLOCK: Final = re.compile(r"^```(sh|python|text)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
@@ -52,10 +53,7 @@ class Runner:
     def __init__(self, folder: Path) -> None:
         self.names: dict[str, Any] = {}
         programs = folder / ".programs"
-        programs.mkdir()
-        program = programs / "vmesh"
-        program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m vmesh "$@"\n')
-        program.chmod(0o755)
+        place_vmesh(programs)
         self._folder = folder
         self._environment = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"}
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -15,6 +14,7 @@ import pytest
 from lxml import etree
 from PIL import Image
 
+from tests.programs import need_program
 from vmesh.formats.picture import flatten
 
 Pixels = npt.NDArray[np.uint8]
@@ -24,14 +24,6 @@ Renderer = Callable[[Path, int], Pixels]
 def _pixels(image: Image.Image) -> Pixels:
     """What a viewer shows: the picture on white."""
     return flatten(np.asarray(image.convert("RGBA")))
-
-
-def need_program(name: str, package: str) -> str:
-    """Path of a program; the test is skipped by name where it is missing."""
-    found = shutil.which(name)
-    if found is None:
-        pytest.skip(f"renderer {name} is missing (package {package})")
-    return found
 
 
 def draw_with_librsvg(path: Path, scale: int) -> Pixels:

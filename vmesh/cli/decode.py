@@ -39,6 +39,9 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 @click.option("--width", type=click.IntRange(1, MAX_SIDE), help="Width of the result in pixels.")
 @click.option("--height", type=click.IntRange(1, MAX_SIDE), help="Height of the result in pixels.")
 @click.option(
+    "--longest-side", type=click.IntRange(1, MAX_SIDE), help="The larger of both, in pixels."
+)
+@click.option(
     "--transform",
     type=MatrixType(),
     help="Affine map in SVG's order: x' = a x + c y + e, y' = b x + d y + f.",
@@ -57,20 +60,32 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 )
 @limit_options
 @quiet_option
-def command(source: str, target: str, allow_partial: bool, quiet: bool, **options: Any) -> None:
+def command(
+    source: str,
+    target: str,
+    longest_side: int | None,
+    allow_partial: bool,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Turn a .vmesh file into pixels: PNG, JPEG, WebP, TIFF or PAM, by the name of OUTPUT.
 
-    The size is that of the photograph, or --scale, --width, --height say it; one of the last two
-    keeps the proportions. Standard output gets a PNG.
+    The size is that of the photograph, or --scale, --width, --height, --longest-side say it; one
+    side keeps the proportions. Standard output gets a PNG.
     """
     limits = take_limits(options)
     check_suffix(target, RASTER_SUFFIXES)
-    if options["scale"] and (options["width"] or options["height"]):
-        raise click.UsageError("expected --scale or a size, not both")
+    size = options["width"] or options["height"]
+    if sum(value is not None for value in (options["scale"], size, longest_side)) > 1:
+        raise click.UsageError("expected --scale, --longest-side or a size, not several of them")
+    if longest_side and options["transform"]:
+        raise click.UsageError("expected no --transform with --longest-side")
     wanted = FORMATS[".png"] if target == STANDARD else format_of(target)
     with show_progress("decoding", 2, quiet=quiet) as report:
         report("reading")
         mesh = read_mesh(source, limits, allow_partial=allow_partial)
+        if longest_side:
+            options["width" if mesh.width >= mesh.height else "height"] = longest_side
         report("drawing")
         write_output(
             target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
