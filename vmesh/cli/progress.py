@@ -5,12 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from rich.progress import Progress, ProgressColumn, TaskID
 
 Report = Callable[[str], None]
+
+# Seconds of work that the time left is told from: a single file may take minutes.
+_MEMORY: Final = 3600.0
 
 
 @contextmanager
@@ -76,5 +79,6 @@ def _bar(
         TextColumn("left"),
         console=Console(stderr=True),
         transient=True,
+        speed_estimate_period=_MEMORY,
     ) as bar:
         yield bar, bar.add_task(title, total=total)
