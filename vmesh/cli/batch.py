@@ -14,6 +14,7 @@ from typing import Any
 
 import click
 
+from vmesh.batch.cluster import run_on_cluster
 from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
 from vmesh.batch.sources import find_sources
@@ -69,6 +70,11 @@ class SuffixesType(click.ParamType[tuple[str, ...]]):
     help="Most sources worked on at once, each by a process with one thread; as many as there are "
     "processors unless given.",
 )
+@click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help="Work on the Dask cluster of this scheduler instead, which sees the same files.",
+)
 @click.option("--force", is_flag=True, help="Make outputs also if they are as new as their source.")
 @mesh_options
 @limit_options
@@ -79,6 +85,7 @@ def command(
     output: str,
     suffixes: tuple[str, ...],
     jobs: int | None,
+    scheduler: str | None,
     force: bool,
     as_json: bool,
     quiet: bool,
@@ -97,16 +104,29 @@ def command(
     settings, limits = take_settings(options), take_limits(options)
     if STANDARD in sources:
         raise click.UsageError("batch reads files, not standard input")
+    if scheduler is not None:
+        if jobs is not None:
+            raise click.UsageError("-j is for this machine, --scheduler for others")
+        # The workers run in other folders.
+        sources, output = tuple(map(absolute, sources)), absolute(output)
     found = find_sources(sources, output)
     tasks, skipped = make_plan(found, output, suffixes, settings, limits, force=force)
     make_folder(output)
-    outcomes = run_in_processes(tasks, jobs or os.cpu_count() or 1)
+    if scheduler is None:
+        outcomes = run_in_processes(tasks, jobs or os.cpu_count() or 1)
+    else:
+        outcomes = run_on_cluster(tasks, scheduler)
     with show_files("batch", len(tasks), quiet=quiet) as report:
         failed = show_outcomes(chain(skipped, outcomes), report, as_json=as_json)
     for outcome in failed:
         click.echo(f"vmesh: {sentence_of(outcome)}", err=True)
     if failed:
         sys.exit(1)
+
+
+def absolute(path: str) -> str:
+    """The path from the root."""
+    return str(Path(path).absolute())
 
 
 def make_folder(path: str) -> None:
