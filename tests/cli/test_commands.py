@@ -454,5 +454,10 @@ def test_help_names_every_command_and_loads_neither_numba_nor_pillow(file: Path)
             assert all(command in done.stdout.decode() for command in commands)
 
 
-def test_the_version_is_told() -> None:
-    assert vmesh.__version__ in succeed("--version").decode()
+def test_the_versions_that_matter_are_told() -> None:
+    lines = succeed("--version").decode().splitlines()
+    assert lines[:2] == [f"vmesh {vmesh.__version__}", "format 1.0"]
+    assert f"numpy {np.__version__}" in lines
+    assert [line.split()[0] for line in lines[2:]] == [
+        "Python", "numpy", "numba", "scipy", "Pillow",
+    ]  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from vmesh import __version__
+from vmesh.cli.version import version_option
 from vmesh.errors import VmeshError, describe
 
 # Command -> the module of that name and the line in the overview; modules are imported when used.
@@ -49,7 +49,7 @@ class LazyGroup(click.Group):
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="vmesh")
+@version_option
 def cli() -> None:
     """Photographs as triangle meshes: encode, store, and turn into pixels, SVG, PDF and HTML.
 
