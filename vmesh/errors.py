@@ -54,3 +54,15 @@ class MeshError(VmeshError, ValueError):
 
 class PartialFileWarning(UserWarning):
     """A file ends too early, and its mesh holds what could be told from the start of it."""
+
+
+def describe(error: BaseException) -> str:
+    """What went wrong, in one line."""
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    text = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, VmeshError | OSError | ValueError):
+        return text
+    return f"{type(error).__name__}: {text}"

@@ -15,38 +15,13 @@ import pytest
 from PIL import Image
 
 import vmesh
+from tests.cli.program import fail, run, succeed
 from tests.pictures import ramp
 from vmesh.codec import layout
 from vmesh.metrics import psnr
 
 COFFEE = Path(__file__).parents[1] / "images" / "coffee.png"
 CHELSEA = Path(__file__).parents[1] / "images" / "chelsea.png"
-
-
-def run(*arguments: str | Path, given: bytes = b"") -> subprocess.CompletedProcess[bytes]:
-    """The program with these arguments and this standard input."""
-    command = [sys.executable, "-m", "vmesh", *map(str, arguments)]
-    return subprocess.run(command, input=given, capture_output=True, check=False)
-
-
-def succeed(*arguments: str | Path, given: bytes = b"") -> bytes:
-    """What the program writes to standard output when it does its work in silence."""
-    done = run(*arguments, given=given)
-    assert done.returncode == 0, done.stderr.decode()
-    assert done.stderr == b""
-    return done.stdout
-
-
-def fail(status: int, *arguments: str | Path, given: bytes = b"") -> str:
-    """What the program says when it fails, without a traceback."""
-    done = run(*arguments, given=given)
-    text = done.stderr.decode()
-    assert done.returncode == status, text
-    assert "Traceback" not in text
-    if status == 1:
-        assert text.startswith("vmesh: ")
-        assert text.count("\n") == 1
-    return text
 
 
 @pytest.fixture(scope="module")
@@ -490,5 +465,10 @@ def test_help_names_every_command_and_loads_neither_numba_nor_pillow(file: Path)
             assert all(command in done.stdout.decode() for command in commands)
 
 
-def test_the_version_is_told() -> None:
-    assert vmesh.__version__ in succeed("--version").decode()
+def test_the_versions_that_matter_are_told() -> None:
+    lines = succeed("--version").decode().splitlines()
+    assert lines[:2] == [f"vmesh {vmesh.__version__}", "format 1.0"]
+    assert f"numpy {np.__version__}" in lines
+    assert [line.split()[0] for line in lines[2:]] == [
+        "Python", "numpy", "numba", "scipy", "Pillow",
+    ]  # fmt: skip

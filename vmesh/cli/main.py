@@ -8,8 +8,8 @@ from typing import Final
 
 import click
 
-from vmesh import __version__
-from vmesh.errors import VmeshError
+from vmesh.cli.version import version_option
+from vmesh.errors import VmeshError, describe
 
 # Command -> the module of that name and the line in the overview; modules are imported when used.
 COMMANDS: Final = {
@@ -23,6 +23,7 @@ COMMANDS: Final = {
     "info": ("info", "Say what is in a .vmesh file."),
     "validate": ("validate", "Say all that is wrong with a .vmesh file."),
     "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),
+    "batch": ("batch", "Encode many photographs, and turn them into other formats."),
     "inspect": ("inspect", "Draw the stages of an encoding."),
     "compare": ("compare", "Measure how close two pictures or meshes are."),
 }
@@ -50,7 +51,7 @@ class LazyGroup(click.Group):
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__, prog_name="vmesh")
+@version_option
 def cli() -> None:
     """Photographs as triangle meshes: encode, store, and turn into pixels, SVG, PDF and HTML.
 
@@ -76,12 +77,3 @@ def main() -> None:
     except (VmeshError, OSError, ValueError, MemoryError) as error:
         click.echo(f"vmesh: {describe(error)}", err=True)
         sys.exit(1)
-
-
-def describe(error: BaseException) -> str:
-    """What went wrong, in one line."""
-    if isinstance(error, MemoryError):
-        return "not enough memory"
-    if isinstance(error, OSError) and error.strerror and error.filename is not None:
-        return f"{error.filename}: {error.strerror}"
-    return " ".join(str(error).split()) or type(error).__name__

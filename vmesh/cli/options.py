@@ -23,7 +23,7 @@ from vmesh.encoder.settings import (
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-_ENCODER_OPTIONS = (
+_MESH_OPTIONS = (
     click.option(
         "-q",
         "--quality",
@@ -99,18 +99,23 @@ _ENCODER_OPTIONS = (
     click.option(
         "--seed", type=click.IntRange(0), default=0, show_default=True, help="Random seed."
     ),
-    click.option(
-        "-j",
-        "--threads",
-        type=click.IntRange(1),
-        help="Most threads at once; the result does not depend on it.",
-    ),
+)
+_THREADS_OPTION = click.option(
+    "-j",
+    "--threads",
+    type=click.IntRange(1),
+    help="Most threads at once; the result does not depend on it.",
 )
 
 
 def encoder_options(command: Command) -> Command:
     """Give a command the settings of the encoder."""
-    for option in reversed(_ENCODER_OPTIONS):
+    return mesh_options(_THREADS_OPTION(command))
+
+
+def mesh_options(command: Command) -> Command:
+    """Give a command the settings of the encoder that decide on the mesh."""
+    for option in reversed(_MESH_OPTIONS):
         command = option(command)
     return command
 

@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+import vmesh
+from tests.batch.pictures import write_pictures
+from tests.cli.program import fail, run, succeed
+from vmesh.arrays import UInt8Array
+
+FAST = ("-e", "1", "--vertices", "60", "-j", "2")
+
+
+def lines(output: bytes) -> dict[str, dict[str, Any]]:
+    """Figures of each source, by its path."""
+    return {figures["source"]: figures for figures in map(json.loads, output.splitlines())}
+
+
+def files_in(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture
+def photos(tmp_path: Path, chelsea: UInt8Array) -> Path:
+    """Two photographs in a folder and one in a folder below it."""
+    write_pictures(tmp_path / "photos", chelsea, 2)
+    write_pictures(tmp_path / "photos" / "sea", chelsea, 1)
+    return tmp_path / "photos"
+
+
+def test_a_folder_is_encoded_and_not_encoded_again(photos: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert succeed("batch", photos, "-o", out, *FAST) == b""
+    assert files_in(out) == {"00.vmesh", "01.vmesh", "sea/00.vmesh"}
+    succeed("encode", photos / "01.png", tmp_path / "one.vmesh", *FAST)
+    assert (out / "01.vmesh").read_bytes() == (tmp_path / "one.vmesh").read_bytes()
+    (out / "01.vmesh").unlink()
+    figures = lines(succeed("batch", photos, "-o", out, "--json", *FAST))
+    assert {source: line["status"] for source, line in figures.items()} == {
+        str(photos / "00.png"): "skipped",
+        str(photos / "01.png"): "done",
+        str(photos / "sea" / "00.png"): "skipped",
+    }
+    forced = lines(succeed("batch", photos, "-o", out, "--json", "--force", *FAST))
+    assert {line["status"] for line in forced.values()} == {"done"}
+
+
+def test_every_format_is_written_and_reported(photos: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    pattern = str(photos / "0*.png")
+    formats = ["--to", "vmesh,svg,PDF, png"]
+    figures = lines(succeed("batch", pattern, "-o", out, *formats, "--json", *FAST))
+    outputs = [str(out / f"01.{suffix}") for suffix in ("vmesh", "svg", "pdf", "png")]
+    line = figures[str(photos / "01.png")]
+    assert line["outputs"] == outputs
+    assert line["bytes"] == sum(Path(path).stat().st_size for path in outputs)
+    assert line["seconds"] > 0
+    assert line["error"] is None
+    assert list(line) == ["source", "status", "outputs", "bytes", "seconds", "error"]
+    assert len(files_in(out)) == 8
+
+
+def test_what_cannot_be_read_is_told_and_the_rest_is_done(photos: Path, tmp_path: Path) -> None:
+    bad = photos / "bad.png"
+    bad.write_text("this is not an image")
+    missing = photos / "missing.jpg"
+    done = run("batch", photos, missing, "-o", tmp_path / "out", "--json", *FAST)
+    assert done.returncode == 1
+    assert sorted(done.stderr.decode().splitlines()) == [
+        f"vmesh: {bad}: not an image in a format that can be read",
+        f"vmesh: {missing}: No such file or directory",
+    ]
+    figures = lines(done.stdout)
+    assert figures[str(bad)]["status"] == "failed"
+    assert "not an image" in figures[str(bad)]["error"]
+    assert files_in(tmp_path / "out") == {"00.vmesh", "01.vmesh", "sea/00.vmesh"}
+
+
+def test_two_sources_for_one_output_are_refused_before_anything_is_done(
+    photos: Path, tmp_path: Path
+) -> None:
+    text = fail(1, "batch", photos / "00.png", photos / "sea" / "00.png", "-o", tmp_path / "out")
+    assert "would both be written to" in text
+    assert not (tmp_path / "out").exists()
+    assert "would replace" in fail(1, "batch", photos, "-o", photos, "--to", "png")
+
+
+def test_what_makes_no_sense_is_wrong_usage(photos: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert "standard input" in fail(2, "batch", "-", "-o", out)
+    assert "vmesh, png" in fail(2, "batch", photos, "-o", out, "--to", "vmesh,docx")
+    assert "is a file" in fail(2, "batch", photos, "-o", photos / "00.png")
+    assert "--output" in fail(2, "batch", photos)
+    assert "quality and vertices" in fail(2, "batch", photos, "-o", out, "-q", "5", *FAST)
+    assert not out.exists()
+
+
+@pytest.mark.skipif(
+    sys.platform == "win32" or os.geteuid() == 0, reason="no folders that cannot be written"
+)
+def test_a_folder_that_cannot_be_written_is_told_at_once(photos: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir(mode=0o500)
+    assert "denied" in fail(1, "batch", photos, "-o", out)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no interrupts of process groups")
+def test_an_interrupted_batch_leaves_no_half_files_and_goes_on(
+    photos: Path, tmp_path: Path, chelsea: UInt8Array
+) -> None:
+    Image.fromarray(chelsea).save(photos / "long.png")
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "vmesh", "batch", str(photos), "-o", str(out), "--json"]
+    with subprocess.Popen(
+        [*command, "-e", "9", "-q", "95", "-j", "2"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        process_group=0,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        first = json.loads(process.stdout.readline())
+        # As a terminal does: to the program and to the processes that it has started.
+        os.killpg(process.pid, signal.SIGINT)
+        assert process.stderr.read().strip() == b""
+        assert process.wait() == 130
+    assert first["status"] == "done"
+    left = files_in(out)
+    assert "long.vmesh" not in left
+    assert all(vmesh.load(out / name) for name in left)
+    figures = lines(succeed(*command[3:], *FAST))
+    assert figures[first["source"]]["status"] == "skipped"
+    assert figures[str(photos / "long.png")]["status"] == "done"
+    assert files_in(out) == {"00.vmesh", "01.vmesh", "long.vmesh", "sea/00.vmesh"}

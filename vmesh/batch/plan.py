@@ -1,0 +1,69 @@
+"""What a batch has to do: its tasks, and the sources that have all their outputs already."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from vmesh.batch.sources import Source
+from vmesh.batch.task import MESH_SUFFIX, Outcome, Task
+from vmesh.encoder.settings import Settings
+from vmesh.limits import Limits
+
+
+def make_plan(
+    sources: Iterable[Source],
+    output: str,
+    suffixes: tuple[str, ...],
+    settings: Settings,
+    limits: Limits,
+    *,
+    force: bool,
+) -> tuple[list[Task], list[Outcome]]:
+    """Tasks of some sources, and outcomes of those that need none.
+
+    Outputs that are as new as their source are left as they are, unless `force` is given. If the
+    mesh is one of them, the other outputs are made from it.
+
+    Raises
+    ------
+    ValueError
+        If two sources have an output in common, or if an output would replace a source.
+    """
+    wanted = [
+        (source.path, [Path(output, source.name).with_suffix(suffix) for suffix in suffixes])
+        for source in sources
+    ]
+    _check_targets(wanted)
+    tasks, skipped = [], []
+    for path, targets in wanted:
+        current = [] if force else [target for target in targets if _is_current(target, path)]
+        missing = tuple(str(target) for target in targets if target not in current)
+        made = next((str(target) for target in current if target.suffix == MESH_SUFFIX), None)
+        if missing:
+            tasks.append(Task(str(path), missing, settings, limits, made))
+        else:
+            skipped.append(Outcome(str(path), "skipped"))
+    return tasks, skipped
+
+
+def _check_targets(wanted: list[tuple[Path, list[Path]]]) -> None:
+    """Refuse outputs that two sources share, or that are themselves a source."""
+    makers: dict[Path, Path] = {}
+    for source, targets in wanted:
+        for target in targets:
+            other = makers.setdefault(target.resolve(), source)
+            if other is not source:
+                raise ValueError(f"{other} and {source} would both be written to {target}")
+    for source, _ in wanted:
+        maker = makers.get(source.resolve())
+        if maker is not None:
+            raise ValueError(f"an output of {maker} would replace {source}, which is a source too")
+
+
+def _is_current(target: Path, source: Path) -> bool:
+    """Whether a target is there and as new as its source."""
+    try:
+        return target.stat().st_mtime_ns >= source.stat().st_mtime_ns
+    except OSError:
+        return False

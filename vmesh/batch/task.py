@@ -1,0 +1,142 @@
+"""One photograph of a batch: plain data and a plain function, for any process or machine."""
+
+from __future__ import annotations
+
+import io
+import threading
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from vmesh.codec.layout import is_vmesh
+from vmesh.encoder.settings import Settings
+from vmesh.errors import ImageError, describe
+from vmesh.files import atomic_output
+from vmesh.limits import Limits
+from vmesh.mesh import Mesh
+
+MESH_SUFFIX: Final = ".vmesh"
+WRITING: Final = threading.Lock()
+"""Held while a file is written: no time to end the process."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A source and what is to be made of it.
+
+    Parameters
+    ----------
+    source : str
+        Path of a photograph or of a ``.vmesh`` file.
+    targets : tuple of str
+        Paths to be written, each in the format that its ending names.
+    settings : Settings
+        Of the encoder.
+    limits : Limits
+        On the source and on its mesh.
+    mesh : str, optional
+        Path of the mesh of the source, where there is one already.
+    """
+
+    source: str
+    targets: tuple[str, ...]
+    settings: Settings
+    limits: Limits
+    mesh: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a source.
+
+    Parameters
+    ----------
+    source : str
+        Its path.
+    status : {"done", "skipped", "failed"}
+        Skipped is what has all its outputs already.
+    outputs : tuple of str
+        Paths that were written.
+    bytes : int
+        Their size together.
+    seconds : float
+        The time it took.
+    error : str, optional
+        What went wrong, in one sentence.
+    """
+
+    source: str
+    status: Literal["done", "skipped", "failed"]
+    outputs: tuple[str, ...] = ()
+    bytes: int = 0
+    seconds: float = 0.0
+    error: str | None = None
+
+
+def run(task: Task) -> Outcome:
+    """Make what a task asks for; what goes wrong is told in the outcome and not raised."""
+    started = time.perf_counter()
+    written: list[str] = []
+    error = None
+    try:
+        mesh = _mesh_of(task)
+        for target in task.targets:
+            _write(mesh, target, task.limits)
+            written.append(target)
+    except Exception as problem:
+        # Whatever it is, the other files of the batch have nothing to do with it.
+        error = describe(problem)
+    return Outcome(
+        task.source,
+        "done" if error is None else "failed",
+        tuple(written),
+        sum(Path(path).stat().st_size for path in written),
+        round(time.perf_counter() - started, 3),
+        error,
+    )
+
+
+def _mesh_of(task: Task) -> Mesh:
+    """The mesh of the source: encoded, or read where there is one."""
+    if task.mesh is not None:
+        return _load(Path(task.mesh).read_bytes(), task.limits)
+    data = Path(task.source).read_bytes()
+    if not is_vmesh(data) and Path(task.source).suffix.lower() != MESH_SUFFIX:
+        return _encode(data, task.settings, task.limits)
+    if any(Path(target).suffix == MESH_SUFFIX for target in task.targets):
+        raise ImageError("this is a .vmesh file, a photograph is needed")
+    return _load(data, task.limits)
+
+
+def _load(data: bytes, limits: Limits) -> Mesh:
+    from vmesh.codec.reader import loads
+
+    return loads(data, limits=limits)
+
+
+def _encode(data: bytes, settings: Settings, limits: Limits) -> Mesh:
+    from vmesh.encoder.pipeline import encode
+    from vmesh.formats.picture import read_picture
+
+    if not data:
+        raise ImageError("the file is empty")
+    picture = read_picture(io.BytesIO(data), limits=limits)
+    mesh = encode(picture.array, metadata=picture.metadata, **asdict(settings))
+    limits.check_vertices(mesh.n_vertices)
+    return mesh
+
+
+def _write(mesh: Mesh, target: str, limits: Limits) -> None:
+    """Write a mesh in the format that the ending of a path names, with its folders."""
+    from vmesh.codec.stream import dump
+    from vmesh.formats.registry import format_of, write_mesh
+
+    path, content = Path(target), io.BytesIO()
+    if path.suffix == MESH_SUFFIX:
+        dump(mesh, content)
+    else:
+        write_mesh(mesh, content, format_of(path), limits=limits)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with WRITING, atomic_output(path) as stream:
+        stream.write(content.getbuffer())
