@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import vmesh
-from tests.cli.test_commands import COFFEE, fail, succeed
+from tests.cli.program import fail, succeed
 from tests.codec import samples
 
 
