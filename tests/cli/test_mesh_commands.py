@@ -9,6 +9,7 @@ import pytest
 
 import vmesh
 from tests.cli.program import fail, succeed
+from tests.cli.test_commands import COFFEE
 from tests.codec import samples
 
 
