@@ -25,7 +25,6 @@ from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
 from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
 from vmesh.formats.svg_layers import Layer, Mode, layers_of
-from vmesh.formats.svg_outlines import outlines_of
 from vmesh.formats.svg_regions import Moments
 from vmesh.kernels.scanline import SUBPIXEL, fill, label, measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -181,16 +180,15 @@ class _Drawing:
 
     def _write_layer(self, document: etree._IncrementalFileWriter, layer: Layer) -> None:
         """Write the gradients of a layer, and its paths."""
-        outlines = outlines_of(self._mesh, layer.regions)
         paints = hex_colors(layer.fits.middles)
-        worth, bodies = gradient_bodies(layer, outlines, self._mesh.unit)
+        worth, bodies = gradient_bodies(layer, self._mesh.unit)
         names = list(islice(self._names, len(worth)))
         for region, name in zip(worth.tolist(), names, strict=True):
             paints[region] = f"url(#{name})"
         if bodies:
             with document.element("defs"):
                 self._write_text(document, map(_GRADIENT.format, names, bodies))
-        self._write_text(document, map(_PATH.format, paints, outlines.path_data()))
+        self._write_text(document, map(_PATH.format, paints, layer.outlines.path_data))
 
     def _write_text(self, document: etree._IncrementalFileWriter, elements: Iterator[str]) -> None:
         """Write elements as text, many to a line."""

@@ -30,14 +30,13 @@ _NAMES: Final = ("x1", "y1", "x2", "y2")
 _DEFAULTS: Final = (0, 0, 1, 0)
 
 
-def gradient_bodies(layer: Layer, outlines: Outlines, unit: int) -> tuple[Int64Array, list[str]]:
+def gradient_bodies(layer: Layer, unit: int) -> tuple[Int64Array, list[str]]:
     """Regions that a flat colour will not do for, and what stands in their gradient elements.
 
     Parameters
     ----------
     layer : Layer
-    outlines : Outlines
-        Of its regions, in units of 1 / `unit` pixel.
+        With outlines in units of 1 / `unit` pixel.
 
     Returns
     -------
@@ -46,11 +45,12 @@ def gradient_bodies(layer: Layer, outlines: Outlines, unit: int) -> tuple[Int64A
     bodies : list of str
         Attributes and content, from behind the id on.
     """
+    outlines = layer.outlines
     spans = _spans(layer.fits, outlines, unit)
     worth = np.flatnonzero(spans[:, 1] - spans[:, 0] >= layer.smallest_range)
     fits, spans = layer.fits.take(worth), spans[worth]
     gamut = _gamut(fits, spans)
-    plane = _plane(fits, outlines.boxes()[worth] / unit)
+    plane = _plane(fits, outlines.boxes[worth] / unit)
     ends = _rounded(_ends(plane, spans, gamut), plane, layer.rounding)
     reached = _kept_in(plane[:, :1] + (ends * plane[:, None, 1:]).sum(axis=2), gamut)
     colors = fits.middles[:, None] + fits.axes[:, None] * reached[:, :, None]

@@ -14,6 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
+from vmesh.formats.svg_outlines import Outlines, outlines_of
 from vmesh.formats.svg_regions import Moments, Slopes, merge
 from vmesh.mesh import Mesh
 
@@ -33,17 +34,17 @@ class Layer:
 
     Parameters
     ----------
-    regions : ndarray
-        Shape (m,), int64: the region of each triangle, -1 where the layer is empty.
-    fits : Slopes
+    outlines : Outlines
         Of the regions.
+    fits : Slopes
+        What best fills them.
     smallest_range : float
         Levels between the ends of a gradient; below it a flat colour will do.
     rounding : float
         Levels by which rounded ends may change a colour.
     """
 
-    regions: Int64Array
+    outlines: Outlines
     fits: Slopes
     smallest_range: float
     rounding: float
@@ -77,13 +78,16 @@ def layers_of(
     # that they win them on the first layer as they do on those that only they are on.
     order = order[np.argsort(split[order], kind="stable")]
     regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
-    layers = [Layer(regions, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
+    outlines = outlines_of(mesh, regions)
+    layers = [Layer(outlines, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
     if split.any():
-        numbers = np.where(split, np.cumsum(split) - 1, -1)[regions]
+        if not split.all():
+            numbers = np.where(split, np.cumsum(split) - 1, -1)
+            outlines = outlines_of(mesh, numbers[regions])
         parts = moments.take(np.flatnonzero(split))
         for channel in (1, 2):
             fits = Slopes.fitted(parts.of_channel(channel, np.ones(len(parts.weights), dtype=bool)))
-            layers.append(Layer(numbers, fits, smallest, rounding))
+            layers.append(Layer(outlines, fits, smallest, rounding))
     return layers
 
 

@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -19,9 +20,9 @@ from vmesh.kernels.half_edges import find_twins
 from vmesh.mesh import Mesh
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Outlines:
-    """Loops of corners, region after region.
+    """Loops of corners, region after region. Layers with the same regions share one.
 
     Parameters
     ----------
@@ -37,16 +38,17 @@ class Outlines:
     loops: Int64Array
     regions: Int64Array
 
-    @property
+    @cached_property
     def starts(self) -> Int64Array:
         """Where each region starts in `corners`, shape (n,)."""
         return self.loops[np.diff(self.regions, prepend=-1) > 0]
 
-    @property
+    @cached_property
     def owners(self) -> Int64Array:
         """The region of each corner, shape (k,)."""
         return np.repeat(self.regions, np.diff(self.loops, append=len(self.corners)))
 
+    @cached_property
     def boxes(self) -> Int64Array:
         """Left, top, width and height of each region, shape (n, 4), in lattice units."""
         low = np.minimum.reduceat(self.corners, self.starts)
@@ -54,6 +56,7 @@ class Outlines:
         boxes: Int64Array = np.concatenate([low, extent], axis=1)
         return boxes
 
+    @cached_property
     def path_data(self) -> list[str]:
         """Path data of each region; a loop is relative to the one before, a corner too."""
         steps = np.diff(self.corners, axis=0, prepend=0)
