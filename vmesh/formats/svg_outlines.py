@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Int64Array
-from vmesh.kernels.half_edges import find_twins
+from vmesh.arrays import Int64Array
+from vmesh.kernels.half_edges import find_twins, walk_outlines
 from vmesh.mesh import Mesh
 
 
@@ -74,40 +74,12 @@ class Outlines:
 
 def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
     """Outlines of regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
-    twins = find_twins(mesh.triangles, mesh.n_vertices).astype(np.int64)
+    twins = find_twins(mesh.triangles, mesh.n_vertices)
     own = np.repeat(regions, 3)
     across = np.where(twins >= 0, own[twins], -1)
-    following = _following(twins, (across == own) & (own >= 0))
-    outer = np.flatnonzero((across != own) & (own >= 0))
-    ordered, loops = _walked(outer[np.argsort(own[outer], kind="stable")], following)
+    inner = across == own
+    outer = np.flatnonzero(~inner & (own >= 0))
+    starts = outer[np.argsort(own[outer], kind="stable")]
+    ordered, loops = walk_outlines(starts, twins, inner)
     corners = mesh.vertices.astype(np.int64)[mesh.triangles.ravel()[ordered]]
     return Outlines(corners, loops, own[ordered[loops]])
-
-
-def _following(twins: Int64Array, inner: BoolArray) -> Int64Array:
-    """The half-edge of a region's outline that follows each of them, shape (3 m,)."""
-    half_edges = np.arange(len(twins))
-    successors = np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
-    following = successors.copy()
-    # Turn about the corner, from triangle to triangle, until the region ends.
-    turning = np.flatnonzero(~inner)
-    while len(turning := turning[inner[following[turning]]]):
-        following[turning] = successors[twins[following[turning]]]
-    return following
-
-
-def _walked(outer: Int64Array, following: Int64Array) -> tuple[Int64Array, Int64Array]:
-    """Half-edges of outlines in turn, and where loops start among them."""
-    ordered: list[int] = []
-    loops: list[int] = []
-    after = following.tolist()
-    seen = bytearray(len(after))
-    for start in outer.tolist():
-        edge = start
-        if not seen[edge]:
-            loops.append(len(ordered))
-        while not seen[edge]:
-            seen[edge] = 1
-            ordered.append(edge)
-            edge = after[edge]
-    return np.array(ordered, dtype=np.int64), np.array(loops, dtype=np.int64)
