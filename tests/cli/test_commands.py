@@ -164,6 +164,13 @@ def test_vector_commands_take_meshes_and_photographs(
     assert from_mesh.read_bytes() == from_photograph.read_bytes()
 
 
+def test_a_drawing_has_the_width_that_is_asked_for(file: Path, tmp_path: Path) -> None:
+    drawing = tmp_path / "drawing.svg"
+    succeed("to-svg", file, drawing, "--width", "210mm")
+    assert b'width="210mm" height="140mm"' in drawing.read_bytes()
+    assert "100%" in fail(2, "to-svg", file, drawing, "--height", "tall")
+
+
 def test_the_script_of_the_element_is_written_alone(file: Path, tmp_path: Path) -> None:
     script = tmp_path / "vmesh-image.js"
     succeed("to-html", "--element", script)

@@ -29,6 +29,11 @@ def detailed(coffee: np.ndarray) -> vmesh.Mesh:
 
 
 @pytest.fixture(scope="module")
+def small(coffee: np.ndarray) -> vmesh.Mesh:
+    return vmesh.encode(coffee, method="blue-noise", vertices=500)
+
+
+@pytest.fixture(scope="module")
 def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("svg")
     paths = {mode: folder / f"{mode}.svg" for mode in ("gradient", "exact", "auto", "flat")}
@@ -125,6 +130,44 @@ def test_the_title_of_a_photograph_is_told_and_escaped(tmp_path: Path) -> None:
     assert root.findtext(f"{SVG}title") == "cup <& saucer>"
     assert root.findtext(f"{SVG}desc") == "A. Painter"
     assert b"profile" in path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({}, ("600", "400")),
+        ({"width": 900}, ("900", "600")),
+        ({"height": "100.5"}, ("150.75", "100.5")),
+        ({"width": " 210MM "}, ("210mm", "140mm")),
+        ({"width": "100%"}, ("100%", None)),
+        ({"width": "20em", "height": "50%"}, ("20em", "50%")),
+    ],
+)
+def test_a_drawing_shows_at_the_size_that_is_asked_for(
+    small: vmesh.Mesh, asked: dict[str, Any], told: tuple[str | None, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "sized.svg"
+    vmesh.export(small, path, **asked)
+    root = etree.parse(path).getroot()
+    assert (root.get("width"), root.get("height")) == told
+    assert root.get("viewBox") == "0 0 600 400"
+
+
+@pytest.mark.parametrize("renderer", ["librsvg", "resvg", "cairosvg"])
+def test_a_drawing_of_another_size_is_scaled(
+    small: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "half.svg"
+    vmesh.export(small, path, width=300)
+    drawn = SVG_RENDERERS[renderer](path, 1)
+    assert psnr(drawn, vmesh.render(small, scale=0.5)) >= 35.0
+
+
+@pytest.mark.parametrize("length", ["wide", "0", "-3", "5 mm", "5q", "1e9", "2000000", "nan", ""])
+def test_what_is_no_length_is_refused(small: vmesh.Mesh, length: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="expected a length such as 800, 210mm or 100%, got"):
+        vmesh.export(small, tmp_path / "a.svg", height=length)
+    assert not list(tmp_path.iterdir())
 
 
 def test_gradients_stay_close_at_four_times_the_size(

@@ -9,8 +9,9 @@ import click
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import STANDARD, check_suffix
-from vmesh.cli.vector import convert
+from vmesh.cli.vector import checked_by, convert
 from vmesh.formats.registry import FORMATS, format_of
+from vmesh.formats.svg_size import parse_length
 
 
 @click.command("to-svg")
@@ -37,6 +38,18 @@ from vmesh.formats.registry import FORMATS, format_of
     default=0.0,
     help="In mode gradient, neighbours share one where that adds less squared error, such as 50.",
 )
+@click.option(
+    "--width",
+    metavar="LENGTH",
+    callback=checked_by(parse_length),
+    help="Width at which it shows, such as 800, 210mm or 100%; unless given, that of the canvas.",
+)
+@click.option(
+    "--height",
+    metavar="LENGTH",
+    callback=checked_by(parse_length),
+    help="Height; one of the two alone keeps the proportions.",
+)
 @encoder_options
 @limit_options
 @quiet_option
@@ -46,6 +59,8 @@ def command(
     mode: str,
     tolerance: float,
     merge: float,
+    width: str | None,
+    height: str | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -58,5 +73,11 @@ def command(
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
     if merge and mode != "gradient":
         raise click.UsageError("--merge is for --mode gradient")
-    chosen = {"mode": mode, "tolerance": tolerance, "merge": merge}
+    chosen = {
+        "mode": mode,
+        "tolerance": tolerance,
+        "merge": merge,
+        "width": width,
+        "height": height,
+    }
     convert(source, target, wanted, settings, limits, quiet=quiet, **chosen)

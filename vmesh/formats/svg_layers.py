@@ -9,16 +9,15 @@ their sum.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
 from vmesh.formats.svg_outlines import Outlines, outlines_of
 from vmesh.formats.svg_regions import Moments, Slopes, merge
+from vmesh.formats.svg_style import Style
 from vmesh.mesh import Mesh
-
-Mode = Literal["gradient", "exact", "auto", "flat"]
 
 _SMALLEST_RANGE: Final = 0.5  # levels: less than that a flat colour shows as well
 _ROUNDING: Final = 0.5  # levels that rounded ends of gradients may add, and where they are exact
@@ -50,29 +49,26 @@ class Layer:
     rounding: float
 
 
-def layers_of(
-    mesh: Mesh, moments: Moments, mode: Mode, tolerance: float, largest: float
-) -> list[Layer]:
+def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
     """Layers of a mesh in the order of painting; the second and third are screened.
 
-    `moments` are those of the colours of its triangles; `tolerance` is for mode "auto", `largest`
-    the squared error that a merger may add.
+    `moments` are those of the colours of its triangles.
     """
     split = np.zeros(mesh.n_triangles, dtype=bool)
     smallest, rounding = _SMALLEST_RANGE, _ROUNDING
     regions = np.arange(mesh.n_triangles)
-    if mode == "flat":
+    if style.mode == "flat":
         smallest = np.inf
-    elif mode == "gradient":
-        regions, moments = merge(mesh, moments, largest)
+    elif style.mode == "gradient":
+        regions, moments = merge(mesh, moments, style.merge)
         split = np.zeros(len(moments.weights), dtype=bool)
-    elif mode == "exact":
+    elif style.mode == "exact":
         split[:] = mesh.n_components > 1
         rounding = _EXACT_ROUNDING
     else:
         # A flat colour leaves out both what a gradient shows and what it leaves.
-        smallest = max(smallest, _FLAT_SHARE * tolerance)
-        split = _farthest(mesh, moments) > tolerance - smallest - _RESERVE
+        smallest = max(smallest, _FLAT_SHARE * style.tolerance)
+        split = _farthest(mesh, moments) > style.tolerance - smallest - _RESERVE
     order = _morton_order(moments.means[:, :2])
     # Pixels on an edge go to what is painted last. Those that are split come after all others, so
     # that they win them on the first layer as they do on those that only they are on.
