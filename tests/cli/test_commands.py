@@ -171,6 +171,15 @@ def test_a_drawing_has_the_width_that_is_asked_for(file: Path, tmp_path: Path) -
     assert "100%" in fail(2, "to-svg", file, drawing, "--height", "tall")
 
 
+def test_edges_of_a_drawing_are_crisp_or_have_an_underlay(file: Path, tmp_path: Path) -> None:
+    drawing = tmp_path / "drawing.svg"
+    for seams, is_crisp in (("crisp", True), ("underlay", False)):
+        succeed("to-svg", file, drawing, "--seams", seams)
+        assert (b"crispEdges" in drawing.read_bytes()) == is_crisp
+    message = fail(2, "to-svg", file, drawing, "--seams", "underlay", "--mode", "auto")
+    assert "crisp edges" in message
+
+
 def test_the_script_of_the_element_is_written_alone(file: Path, tmp_path: Path) -> None:
     script = tmp_path / "vmesh-image.js"
     succeed("to-html", "--element", script)

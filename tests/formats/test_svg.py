@@ -106,11 +106,20 @@ def test_what_is_merged_is_drawn_as_one_region_with_its_holes(tmp_path: Path) ->
     assert np.abs(drawn.astype(int) - vmesh.render(mesh)).max() <= 1
 
 
-@pytest.mark.parametrize("option", [{"tolerance": 0}, {"merge": -1}, {"merge": 1, "mode": "exact"}])
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"tolerance": 0},
+        {"merge": -1},
+        {"merge": 1, "mode": "exact"},
+        {"seams": "none"},
+        {"seams": "underlay", "mode": "auto"},
+    ],
+)
 def test_options_without_sense_are_refused(
     detailed: vmesh.Mesh, option: dict[str, Any], tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=r"expected|merged"):
+    with pytest.raises(ValueError, match=r"expected|merged|underlay"):
         vmesh.export(detailed, tmp_path / "a.svg", **option)
     assert not list(tmp_path.iterdir())
 
@@ -193,6 +202,40 @@ def test_no_seams_show_between_triangles(renderer: str, tmp_path: Path) -> None:
     for scale in (1, 3):
         drawn = SVG_RENDERERS[renderer](path, scale)
         assert np.abs(drawn.astype(int) - mesh.colors[0]).max() <= 1
+
+
+def smoothed(path: Path) -> Path:
+    """The same drawing as a program shows it that smooths all edges, whatever it is told."""
+    copy = path.with_suffix(".smooth.svg")
+    copy.write_bytes(path.read_bytes().replace(b' shape-rendering="crispEdges"', b""))
+    return copy
+
+
+@pytest.mark.parametrize("renderer", SVG_RENDERERS)
+def test_an_underlay_hides_the_seams_of_smooth_edges(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    draw = SVG_RENDERERS[renderer]
+    path = tmp_path / "underlay.svg"
+    vmesh.export(detailed, path, seams="underlay")
+    assert b"shape-rendering" not in path.read_bytes()
+    for scale in (1, 3):
+        crisp = compare(draw(smoothed(drawings["gradient"]), scale), detailed, scale)
+        found = compare(draw(path, scale), detailed, scale)
+        assert found.seams < 0.4 * crisp.seams
+
+
+@pytest.mark.parametrize("renderer", BLENDING)
+def test_exact_drawings_have_an_underlay_too(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    draw = SVG_RENDERERS[renderer]
+    path = tmp_path / "underlay.svg"
+    vmesh.export(detailed, path, mode="exact", seams="underlay")
+    crisp = compare(draw(smoothed(drawings["exact"]), 2), detailed, 2)
+    found = compare(draw(path, 2), detailed, 2)
+    assert found.inside <= 1.0
+    assert found.seams < 0.4 * crisp.seams
 
 
 @pytest.mark.parametrize("renderer", BLENDING)  # CairoSVG draws no such mask

@@ -12,6 +12,7 @@ from vmesh.cli.streams import STANDARD, check_suffix
 from vmesh.cli.vector import checked_by, convert
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg_size import parse_length
+from vmesh.formats.svg_style import Style
 
 
 @click.command("to-svg")
@@ -39,6 +40,13 @@ from vmesh.formats.svg_size import parse_length
     help="In mode gradient, neighbours share one where that adds less squared error, such as 50.",
 )
 @click.option(
+    "--seams",
+    type=click.Choice(("crisp", "underlay")),
+    default="crisp",
+    show_default=True,
+    help="How no seams show; underlay is for programs that smooth all edges, as Qt and Skia.",
+)
+@click.option(
     "--width",
     metavar="LENGTH",
     callback=checked_by(parse_length),
@@ -53,17 +61,7 @@ from vmesh.formats.svg_size import parse_length
 @encoder_options
 @limit_options
 @quiet_option
-def command(
-    source: str,
-    target: str,
-    mode: str,
-    tolerance: float,
-    merge: float,
-    width: str | None,
-    height: str | None,
-    quiet: bool,
-    **options: Any,
-) -> None:
+def command(source: str, target: str, quiet: bool, **options: Any) -> None:
     """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
 
     The options of the encoder apply to photographs.
@@ -71,13 +69,10 @@ def command(
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
-    if merge and mode != "gradient":
-        raise click.UsageError("--merge is for --mode gradient")
-    chosen = {
-        "mode": mode,
-        "tolerance": tolerance,
-        "merge": merge,
-        "width": width,
-        "height": height,
-    }
-    convert(source, target, wanted, settings, limits, quiet=quiet, **chosen)
+    size = {name: options[name] for name in ("width", "height")}
+    style = {name: options[name] for name in ("mode", "tolerance", "merge", "seams")}
+    try:
+        Style(**style)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+    convert(source, target, wanted, settings, limits, quiet=quiet, **style, **size)

@@ -89,9 +89,9 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
         Replaced only when the new file is complete.
     **options
         For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
-        with a ``tolerance`` in levels, or "flat", ``merge``, and ``width`` or ``height``, such as
-        "210mm" or "100%"; for PDF ``page_width``, such as "210mm", and ``backend``, "native" or
-        "cairo".
+        with a ``tolerance`` in levels, or "flat", ``merge``, ``seams``, "crisp" or "underlay",
+        and ``width`` or ``height``, such as "210mm" or "100%"; for PDF ``page_width``, such as
+        "210mm", and ``backend``, "native" or "cairo".
     """
     target = format_of(path)
     with atomic_output(path) as stream:

@@ -6,7 +6,8 @@ drawn exactly, so that three layers, one for each channel, joined by `mix-blend-
 the mesh as it is.
 
 Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
-same to the last digit on both sides (`svg_outlines.py`). Alpha is drawn as a mask of the same make.
+same to the last digit on both sides; or regions reach under their neighbours (`svg_outlines.py`).
+Alpha is drawn as a mask of the same make.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
 from vmesh.formats.svg_drawing import Drawing
 from vmesh.formats.svg_size import Length, size_attributes
-from vmesh.formats.svg_style import Mode, Style
+from vmesh.formats.svg_style import Mode, Seams, Style
 from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
@@ -37,6 +38,7 @@ def write_svg(
     mode: Mode = "gradient",
     tolerance: float = 4.0,
     merge: float = 0.0,
+    seams: Seams = "crisp",
     width: Length | None = None,
     height: Length | None = None,
     limits: Limits = DEFAULT_LIMITS,
@@ -55,6 +57,9 @@ def write_svg(
     merge : float
         In mode "gradient", neighbours share one gradient where that adds less than this to the
         squared error, summed over pixels and channels.
+    seams : {"crisp", "underlay"}
+        How no seams show: edges that are not smoothed, or regions that reach under their
+        neighbours, for programs that smooth all edges. Not "underlay" in mode "auto".
     width, height : str or float, optional
         Size at which it shows, in units of CSS such as "210mm" or "100%"; a number counts
         pixels. One of them alone keeps the proportions; without both a pixel shows as one.
@@ -67,7 +72,7 @@ def write_svg(
         If an option is none of these, or has no meaning in the mode.
     """
     limits.check_vertices(mesh.n_vertices)
-    style = Style(mode, tolerance, merge)
+    style = Style(mode, tolerance, merge, seams)
     size = size_attributes(mesh, width, height)
     if mode == "flat":
         _check_work(mesh, limits)

@@ -59,13 +59,14 @@ class Drawing:
 
     def write(self, rgb: UInt8Array) -> None:
         """Write a group that shows colours of shape (n, 3)."""
-        mesh, is_flat = self._mesh, self._style.mode == "flat"
+        mesh, is_crisp = self._mesh, self._style.seams == "crisp"
+        shift = _FLAT_SHIFT if self._style.mode == "flat" and is_crisp else 0.0
         moments = Moments.of_triangles(mesh, rgb.astype(np.float64))
-        if is_flat:
+        if shift:
             moments.means[:, 2:] = _shown_means(mesh, rgb, moments.means[:, 2:])
-        moves = [f"translate({-_FLAT_SHIFT} {-_FLAT_SHIFT})"] if is_flat else []
+        moves = [f"translate({-shift} {-shift})"] if shift else []
         moves += [f"scale({1 / mesh.unit:.9g})"] if mesh.unit > 1 else []
-        group = {"shape-rendering": "crispEdges"}
+        group = {"shape-rendering": "crispEdges"} if is_crisp else {}
         if moves:
             group["transform"] = " ".join(moves)
         with self._document.element("g", group):

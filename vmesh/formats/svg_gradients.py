@@ -65,7 +65,7 @@ def gradient_bodies(layer: Layer, unit: int) -> tuple[Int64Array, list[str]]:
 def _spans(fits: Slopes, outlines: Outlines, unit: int) -> Float64Array:
     """Least and largest value on each region, shape (n, 2)."""
     owners = outlines.owners
-    apart = outlines.corners / unit - fits.centers[owners]
+    apart = outlines.bounds / unit - fits.centers[owners]
     values = (apart * fits.slopes[owners]).sum(axis=1)
     low = np.minimum.reduceat(values, outlines.starts)
     high = np.maximum.reduceat(values, outlines.starts)

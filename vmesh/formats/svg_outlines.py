@@ -6,6 +6,10 @@
      |  region     /        (y points down). Nothing is rounded, so that neighbours have the very
      |      ______/         same side: crisp edges then leave no pixel between them, and give each
      |_____|                to the region that holds its centre.
+
+Programs that smooth all edges let what is beneath shine through where two regions meet. For them a
+region laps: each side that it shares with a region painted later is drawn out to the middle of the
+triangle across, where the later region covers it.
 """
 
 from __future__ import annotations
@@ -32,11 +36,15 @@ class Outlines:
         Shape (l,), int64: where each loop starts in `corners`.
     regions : ndarray
         Shape (l,), int64: the region of each loop, ascending from 0 without gaps.
+    bounds : ndarray
+        Shape (k, 2), int64: as `corners`, but with the corner before it for a place that a region
+        has under another one.
     """
 
     corners: Int64Array
     loops: Int64Array
     regions: Int64Array
+    bounds: Int64Array
 
     @cached_property
     def starts(self) -> Int64Array:
@@ -56,6 +64,13 @@ class Outlines:
         boxes: Int64Array = np.concatenate([low, extent], axis=1)
         return boxes
 
+    def lapped(self, sides: Int64Array, places: Int64Array) -> Outlines:
+        """The same with sides drawn out to a place each; a side has the number of its corner."""
+        corners = np.insert(self.corners, sides + 1, places, axis=0)
+        bounds = np.insert(self.bounds, sides + 1, self.bounds[sides], axis=0)
+        loops = self.loops + np.searchsorted(sides, self.loops)
+        return Outlines(corners, loops, self.regions, bounds)
+
     @cached_property
     def path_data(self) -> list[str]:
         """Path data of each region; a loop is relative to the one before, a corner too."""
@@ -72,8 +87,17 @@ class Outlines:
         return texts
 
 
-def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
-    """Outlines of regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
+def outlines_of(mesh: Mesh, regions: Int64Array, *, lapped: bool = False) -> Outlines:
+    """Outlines of regions, which are painted in the order of their numbers.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    regions : ndarray
+        Shape (m,), int64: the region of each triangle, or -1 for none.
+    lapped : bool
+        Whether regions reach under those that are painted after them.
+    """
     twins = find_twins(mesh.triangles, mesh.n_vertices)
     own = np.repeat(regions, 3)
     across = np.where(twins >= 0, own[twins], -1)
@@ -81,5 +105,12 @@ def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
     outer = np.flatnonzero(~inner & (own >= 0))
     starts = outer[np.argsort(own[outer], kind="stable")]
     ordered, loops = walk_outlines(starts, twins, inner)
-    corners = mesh.vertices.astype(np.int64)[mesh.triangles.ravel()[ordered]]
-    return Outlines(corners, loops, own[ordered[loops]])
+    vertices = mesh.vertices.astype(np.int64)
+    corners = vertices[mesh.triangles.ravel()[ordered]]
+    outlines = Outlines(corners, loops, own[ordered[loops]], corners)
+    if not lapped:
+        return outlines
+    under = np.flatnonzero(across[ordered] > own[ordered])
+    above = mesh.triangles[twins[ordered[under]] // 3]
+    middles = (2 * vertices[above].sum(axis=1) + 3) // 6
+    return outlines.lapped(under, middles)

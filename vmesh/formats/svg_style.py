@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 Mode = Literal["gradient", "exact", "auto", "flat"]
+Seams = Literal["crisp", "underlay"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +24,13 @@ class Style:
     mode: Mode = "gradient"
     tolerance: float = 4.0
     merge: float = 0.0
+    seams: Seams = "crisp"
 
     def __post_init__(self) -> None:
-        known = get_args(Mode)
-        if self.mode not in known:
-            raise ValueError(f"expected mode to be one of {', '.join(known)}, got {self.mode!r}")
+        for name, kinds in (("mode", Mode), ("seams", Seams)):
+            known, found = get_args(kinds), getattr(self, name)
+            if found not in known:
+                raise ValueError(f"expected {name} to be one of {', '.join(known)}, got {found!r}")
         if not 0 < self.tolerance <= 255:
             raise ValueError(
                 f"expected a tolerance above 0, of at most 255 levels, got {self.tolerance}"
@@ -36,3 +39,6 @@ class Style:
             raise ValueError(f"expected a finite error of 0 or more to merge by, got {self.merge}")
         if self.merge and self.mode != "gradient":
             raise ValueError(f"regions are merged in mode gradient only, got mode {self.mode}")
+        # Screening is no sum where smooth edges of split and whole triangles meet.
+        if self.seams == "underlay" and self.mode == "auto":
+            raise ValueError("mode auto needs crisp edges: no seams by underlay")
