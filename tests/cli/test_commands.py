@@ -171,6 +171,17 @@ def test_a_drawing_has_the_width_that_is_asked_for(file: Path, tmp_path: Path) -
     assert "100%" in fail(2, "to-svg", file, drawing, "--height", "tall")
 
 
+def test_a_drawing_is_fitted_to_a_photograph_of_its_size(file: Path, tmp_path: Path) -> None:
+    plain, fitted = tmp_path / "plain.svg", tmp_path / "fitted.svg"
+    succeed("to-svg", file, plain)
+    succeed("to-svg", file, fitted, "--fit", COFFEE)
+    assert fitted.read_bytes() != plain.read_bytes()
+    with Image.open(COFFEE) as image:
+        image.resize((300, 200)).save(tmp_path / "half.png")
+    message = fail(1, "to-svg", file, fitted, "--fit", tmp_path / "half.png")
+    assert "600 x 400 pixels, got 300 x 200" in message
+
+
 def test_edges_of_a_drawing_are_crisp_or_have_an_underlay(file: Path, tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
     for seams, is_crisp in (("crisp", True), ("underlay", False)):

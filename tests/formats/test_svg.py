@@ -238,6 +238,75 @@ def test_exact_drawings_have_an_underlay_too(
     assert found.seams < 0.4 * crisp.seams
 
 
+@pytest.mark.parametrize("mode", ["gradient", "exact", "auto", "flat"])
+def test_gradients_fitted_to_the_photograph_are_closer_to_it(
+    coffee: np.ndarray, drawings: dict[str, Path], detailed: vmesh.Mesh, mode: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "fitted.svg"
+    vmesh.export(detailed, path, mode=mode, fit=coffee)
+    draw = SVG_RENDERERS["librsvg"]
+    gain = psnr(draw(path, 1), coffee) - psnr(draw(drawings[mode], 1), coffee)
+    assert gain > (0.0 if mode == "flat" else 1.5)
+
+
+def test_a_photograph_that_the_mesh_draws_is_fitted_as_the_mesh_is(
+    small: vmesh.Mesh, tmp_path: Path
+) -> None:
+    vmesh.export(small, tmp_path / "own.svg", mode="exact")
+    vmesh.export(small, tmp_path / "fitted.svg", mode="exact", fit=vmesh.render(small))
+    draw = SVG_RENDERERS["librsvg"]
+    own, fitted = (draw(tmp_path / f"{name}.svg", 1).astype(int) for name in ("own", "fitted"))
+    assert np.abs(own - fitted).mean() < 0.2
+
+
+@pytest.mark.parametrize("n_pixels", [1, 3])
+def test_triangles_without_pixels_keep_the_colors_of_the_mesh(
+    n_pixels: int, tmp_path: Path
+) -> None:
+    # Each pixel in 128 triangles, hardly any of which holds its centre.
+    steps = np.arange(0, n_pixels * 8 + 1)
+    places = [(x, y) for y in steps for x in steps]
+    side = len(steps)
+    corners = [i for i in range(side * side - side) if i % side < side - 1]
+    quads = [(i, i + 1, i + side + 1, i + side) for i in corners]
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    colors = np.full((len(places), 3), 200, dtype=np.uint8)
+    mesh = vmesh.Mesh.from_colors(n_pixels, n_pixels, places, triangles, colors, subdivision=3)
+    path = tmp_path / "small.svg"
+    vmesh.export(mesh, path, fit=np.zeros((n_pixels, n_pixels, 3), dtype=np.uint8))
+    drawn = SVG_RENDERERS["librsvg"](path, 8)
+    assert (drawn == 200).mean() > 0.8
+    assert (drawn < 190).any()
+
+
+def test_pixels_that_do_not_show_are_not_fitted_to(coffee: np.ndarray, tmp_path: Path) -> None:
+    alpha = np.zeros(coffee.shape[:2], dtype=np.uint8)
+    alpha[:, :300] = 255
+    hidden = np.where(alpha[:, :, None] > 0, coffee, 255 - coffee)
+    mesh = vmesh.encode(np.dstack([coffee, alpha]), vertices=2000)
+    for name, colors in (("plain", coffee), ("inverse", hidden)):
+        vmesh.export(mesh, tmp_path / f"{name}.svg", fit=np.dstack([colors, alpha]))
+    assert (tmp_path / "plain.svg").read_bytes() == (tmp_path / "inverse.svg").read_bytes()
+    drawn = SVG_RENDERERS["librsvg"](tmp_path / "plain.svg", 1)
+    assert psnr(drawn, flatten(np.dstack([coffee, alpha]))) > 25.0
+
+
+@pytest.mark.parametrize(
+    "photograph",
+    [
+        np.zeros((300, 600, 3), dtype=np.uint8),
+        np.zeros((400, 600, 2), dtype=np.uint8),
+        np.zeros((400, 600, 3)),
+    ],
+)
+def test_what_is_no_photograph_of_the_mesh_is_not_fitted_to(
+    small: vmesh.Mesh, photograph: np.ndarray, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match="expected a photograph of"):
+        vmesh.export(small, tmp_path / "a.svg", fit=photograph)
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("renderer", BLENDING)  # CairoSVG draws no such mask
 @pytest.mark.parametrize("components", [1, 4])
 def test_grey_and_alpha_are_drawn(

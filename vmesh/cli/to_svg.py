@@ -8,7 +8,7 @@ import click
 
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
-from vmesh.cli.streams import STANDARD, check_suffix
+from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
 from vmesh.cli.vector import checked_by, convert
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg_size import parse_length
@@ -47,6 +47,11 @@ from vmesh.formats.svg_style import Style
     help="How no seams show; underlay is for programs that smooth all edges, as Qt and Skia.",
 )
 @click.option(
+    "--fit",
+    metavar="PHOTO",
+    help="Fit the gradients to the pixels of this photograph, that the mesh was made of.",
+)
+@click.option(
     "--width",
     metavar="LENGTH",
     callback=checked_by(parse_length),
@@ -61,7 +66,7 @@ from vmesh.formats.svg_style import Style
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, quiet: bool, **options: Any) -> None:
+def command(source: str, target: str, fit: str | None, quiet: bool, **options: Any) -> None:
     """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
 
     The options of the encoder apply to photographs.
@@ -69,10 +74,11 @@ def command(source: str, target: str, quiet: bool, **options: Any) -> None:
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
-    size = {name: options[name] for name in ("width", "height")}
     style = {name: options[name] for name in ("mode", "tolerance", "merge", "seams")}
     try:
         Style(**style)
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-    convert(source, target, wanted, settings, limits, quiet=quiet, **style, **size)
+    if fit is not None:
+        options["fit"] = read_photograph(fit, limits).array
+    convert(source, target, wanted, settings, limits, quiet=quiet, **options)

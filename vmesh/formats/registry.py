@@ -90,8 +90,8 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
     **options
         For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
         with a ``tolerance`` in levels, or "flat", ``merge``, ``seams``, "crisp" or "underlay",
-        and ``width`` or ``height``, such as "210mm" or "100%"; for PDF ``page_width``, such as
-        "210mm", and ``backend``, "native" or "cairo".
+        ``fit``, the photograph as an array, and ``width`` or ``height``, such as "210mm" or "100%";
+        for PDF ``page_width``, such as "210mm", and ``backend``, "native" or "cairo".
     """
     target = format_of(path)
     with atomic_output(path) as stream:

@@ -15,11 +15,14 @@ from __future__ import annotations
 import gzip
 from typing import Any, BinaryIO, Final
 
+import numpy as np
 from lxml import etree
 
+from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
 from vmesh.formats.svg_drawing import Drawing
+from vmesh.formats.svg_photograph import Photograph, rgba_of
 from vmesh.formats.svg_size import Length, size_attributes
 from vmesh.formats.svg_style import Mode, Seams, Style
 from vmesh.kernels.scanline import measure
@@ -39,6 +42,7 @@ def write_svg(
     tolerance: float = 4.0,
     merge: float = 0.0,
     seams: Seams = "crisp",
+    fit: SampleArray | None = None,
     width: Length | None = None,
     height: Length | None = None,
     limits: Limits = DEFAULT_LIMITS,
@@ -60,6 +64,9 @@ def write_svg(
     seams : {"crisp", "underlay"}
         How no seams show: edges that are not smoothed, or regions that reach under their
         neighbours, for programs that smooth all edges. Not "underlay" in mode "auto".
+    fit : ndarray, optional
+        The photograph that the mesh was made of, as :func:`vmesh.encode` takes it, in the size of
+        the canvas: gradients are fitted to its pixels instead of to the mesh.
     width, height : str or float, optional
         Size at which it shows, in units of CSS such as "210mm" or "100%"; a number counts
         pixels. One of them alone keeps the proportions; without both a pixel shows as one.
@@ -74,10 +81,11 @@ def write_svg(
     limits.check_vertices(mesh.n_vertices)
     style = Style(mode, tolerance, merge, seams)
     size = size_attributes(mesh, width, height)
-    if mode == "flat":
+    if mode == "flat" or fit is not None:
         _check_work(mesh, limits)
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
     colors = mesh.plain_colors
+    rgba = None if fit is None else rgba_of(mesh, fit)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
         document.element("svg", root, nsmap={None: _NAMESPACE}),
@@ -88,11 +96,22 @@ def write_svg(
             whole = {"width": str(mesh.width), "height": str(mesh.height)}
             frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}
             with document.element("mask", {"id": _MASK, **frame}):
-                drawing.write(colors[:, [3, 3, 3]])
+                drawing.write(colors[:, [3, 3, 3]], _channels(rgba, [3, 3, 3]))
             with document.element("g", {"mask": f"url(#{_MASK})"}):
-                drawing.write(colors[:, :3])
+                drawing.write(colors[:, :3], _channels(rgba, [0, 1, 2], 3))
         else:
-            drawing.write(colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors)
+            rgb = colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors
+            drawing.write(rgb, _channels(rgba, [0, 1, 2]))
+
+
+def _channels(
+    rgba: UInt8Array | None, shown: list[int], weight: int | None = None
+) -> Photograph | None:
+    """Channels of a photograph that are shown, and the one that says how much pixels count."""
+    if rgba is None:
+        return None
+    full = np.full(rgba.shape[:2], 255, dtype=np.uint8)
+    return Photograph(rgba[:, :, shown], full if weight is None else rgba[:, :, weight])
 
 
 def write_svgz(
@@ -105,7 +124,7 @@ def write_svgz(
 
 
 def _check_work(mesh: Mesh, limits: Limits) -> None:
-    """Refuse a raster for flat colours that is larger than what is allowed."""
+    """Refuse a raster, of flat colours or of pixels to fit to, that is larger than allowed."""
     limits.check_pixels(mesh.width, mesh.height)
     positions = scaled_positions(mesh, (mesh.width, mesh.height))
     _, n_rows = measure(positions, mesh.triangles, mesh.height)

@@ -19,6 +19,7 @@ from vmesh.arrays import Float64Array, UInt8Array
 from vmesh.formats.raster import scaled_positions
 from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
 from vmesh.formats.svg_layers import Layer, layers_of
+from vmesh.formats.svg_photograph import Photograph
 from vmesh.formats.svg_regions import Moments
 from vmesh.formats.svg_style import Style
 from vmesh.kernels.scanline import SUBPIXEL, fill, label
@@ -57,12 +58,14 @@ class Drawing:
         self._style = style
         self._names = _names()
 
-    def write(self, rgb: UInt8Array) -> None:
-        """Write a group that shows colours of shape (n, 3)."""
+    def write(self, rgb: UInt8Array, photograph: Photograph | None = None) -> None:
+        """Write a group that shows colours of shape (n, 3), or those of a photograph."""
         mesh, is_crisp = self._mesh, self._style.seams == "crisp"
         shift = _FLAT_SHIFT if self._style.mode == "flat" and is_crisp else 0.0
         moments = Moments.of_triangles(mesh, rgb.astype(np.float64))
-        if shift:
+        if photograph is not None:
+            moments = photograph.moments(mesh, moments)
+        elif shift:
             moments.means[:, 2:] = _shown_means(mesh, rgb, moments.means[:, 2:])
         moves = [f"translate({-shift} {-shift})"] if shift else []
         moves += [f"scale({1 / mesh.unit:.9g})"] if mesh.unit > 1 else []
