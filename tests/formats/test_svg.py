@@ -390,3 +390,71 @@ def test_flat_colors_keep_within_the_limits(coffee: np.ndarray, tmp_path: Path) 
         with pytest.raises(vmesh.LimitError):
             vmesh.export(mesh, tmp_path / "a.svg", mode="flat", limits=limits)
     assert not list(tmp_path.iterdir())
+
+
+def of_quads(width: int, height: int, places: Any, colors: Any) -> vmesh.Mesh:
+    """A mesh of the columns between pairs of places, one above the other."""
+    n = len(places) // 2
+    faces = [t for i in range(0, 2 * n - 2, 2) for t in ((i, i + 2, i + 3), (i, i + 3, i + 1))]
+    return vmesh.Mesh.from_colors(width, height, places, faces, np.asarray(colors, np.uint8))
+
+
+EXTREMES = {
+    "a single pixel": of_quads(1, 1, [(0, 0), (0, 1), (1, 0), (1, 1)], [(9, 90, 200)] * 4),
+    "a pair of triangles": of_quads(
+        40, 30, [(0, 0), (0, 30), (40, 0), (40, 30)], np.arange(12).reshape(4, 3) * 20
+    ),
+    "the widest canvas": of_quads(
+        65_535, 2, [(0, 0), (0, 2), (65_535, 0), (65_535, 2)], np.arange(12).reshape(4, 3) * 20
+    ),
+    "slivers": of_quads(
+        300,
+        200,
+        [(0, 0), (0, 200), (1, 0), (299, 200), (300, 0), (300, 200)],
+        np.arange(18).reshape(6, 3) * 14,
+    ),
+    "alpha": of_quads(
+        40, 30, [(0, 0), (0, 30), (40, 0), (40, 30)], np.arange(16).reshape(4, 4) * 16
+    ),
+}
+STYLES: dict[str, dict[str, Any]] = {
+    "gradient": {},
+    "merged": {"merge": 1e3},
+    "exact": {"mode": "exact"},
+    "auto": {"mode": "auto"},
+    "flat": {"mode": "flat"},
+    "underlay": {"mode": "exact", "seams": "underlay"},
+}
+VOCABULARY = etree.RelaxNG(etree.parse(Path(__file__).with_name("svg-vocabulary.rng")))
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extreme_meshes_are_drawn_in_every_style(name: str, style: str, tmp_path: Path) -> None:
+    mesh = EXTREMES[name]
+    path = tmp_path / "extreme.svg"
+    vmesh.export(mesh, path, **STYLES[style])
+    VOCABULARY.assertValid(etree.parse(path))
+    if name == "the widest canvas":  # more pixels a side than renderers take
+        return
+    drawn = SVG_RENDERERS["resvg"](path, 4)
+    if STYLES[style].get("mode") in ("exact", "auto"):
+        assert compare(drawn, mesh, 4).inside <= 4.5
+    assert drawn.shape == (4 * mesh.height, 4 * mesh.width, 3)
+
+
+def test_a_document_with_all_that_it_may_hold_keeps_to_the_vocabulary(
+    drawings: dict[str, Path], tmp_path: Path
+) -> None:
+    for path in drawings.values():
+        VOCABULARY.assertValid(etree.parse(path))
+    exif = Image.Exif()
+    exif[270], exif[315] = "title", "author"
+    metadata = vmesh.Metadata(exif=exif.tobytes().removeprefix(b"Exif\0\0"), icc=b"profile")
+    path = tmp_path / "all.svg"
+    mesh = EXTREMES["alpha"].replaced(metadata=metadata)
+    vmesh.export(mesh, path, mode="exact", width="100%")
+    tree = etree.parse(path)
+    VOCABULARY.assertValid(tree)
+    tree.getroot()[-1].set("colour", "red")
+    assert not VOCABULARY.validate(tree)
