@@ -1,16 +1,20 @@
 """Vector output: bytes, seconds, and how close programs that others wrote draw it to our raster.
 
-python tools/bench_vector.py --images DIR [--vertices N ...] [--renderer NAME ...] [--markdown]
+python tools/bench_vector.py --images DIR [--part modes|peers] [--vertices N]
+                             [--renderer NAME] [--markdown]
 """
 
 from __future__ import annotations
 
+import gzip
+import io
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,10 +27,13 @@ from measurement import (
     images_option,
     load_photographs,
     markdown_option,
+    version_of,
 )
+from tracers import Tracing, tracings_of
 
 import vmesh
 from vmesh.formats.picture import flatten
+from vmesh.formats.svg import write_svg
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr
 
@@ -55,6 +62,13 @@ MODES: Final = (
     Mode("PDF exact", ".pdf"),
     Mode("PDF cairo", ".pdf", {"backend": "cairo"}),
 )
+PEER_RENDERER: Final = "resvg"
+PEER_MODES: Final[dict[str, Callable[[Photograph], dict[str, Any]]]] = {
+    "gradient": lambda _: {},
+    "merged": lambda _: {"merge": 50.0},
+    "fitted": lambda photograph: {"fit": photograph.pixels},
+    "fitted, merged": lambda photograph: {"fit": photograph.pixels, "merge": 50.0},
+}
 
 
 @click.command()
@@ -62,20 +76,28 @@ MODES: Final = (
 @markdown_option
 @click.option("--vertices", multiple=True, type=click.IntRange(4), default=VERTICES)
 @click.option("--renderer", "wanted", multiple=True, help="All that are installed unless given.")
-def main(folder: Path, markdown: bool, vertices: tuple[int, ...], wanted: tuple[str, ...]) -> None:
+@click.option(
+    "--part",
+    "parts",
+    type=click.Choice(["modes", "peers"]),
+    multiple=True,
+    help="Only this part; may be given more than once.",
+)
+def main(
+    folder: Path,
+    markdown: bool,
+    vertices: tuple[int, ...],
+    wanted: tuple[str, ...],
+    parts: tuple[str, ...],
+) -> None:
     """Measure vector output on the first three photographs of a folder."""
     printer = Printer(markdown)
-    printer.heading("Vector output")
+    photographs = load_photographs(folder)[:N_PHOTOGRAPHS]
     renderers = installed_renderers(wanted)
-    for photograph in load_photographs(folder)[:N_PHOTOGRAPHS]:
-        for n in vertices:
-            for method in METHODS:
-                report(printer, photograph, n, method, renderers)
-    printer.paragraph(
-        "dB is the PSNR over RGB against our own raster at "
-        f"{' and '.join(f'{scale}x' for scale in SCALES)}; s is the time of the latter drawing, "
-        "with the start of the program where it is one. Single runs."
-    )
+    if not parts or "modes" in parts:
+        report_modes(printer, photographs, vertices, renderers)
+    if not parts or "peers" in parts:
+        report_peers(printer, photographs, vertices)
     printer.paragraph(describe_machine())
 
 
@@ -90,7 +112,24 @@ def installed_renderers(wanted: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     }
 
 
-def report(
+def report_modes(
+    printer: Printer,
+    photographs: Sequence[Photograph],
+    vertices: Sequence[int],
+    renderers: Mapping[str, Mapping[str, Any]],
+) -> None:
+    """Print how programs draw every mode of every mesh."""
+    printer.heading("Vector output")
+    for photograph, n, method in product(photographs, vertices, METHODS):
+        report_mesh(printer, photograph, n, method, renderers)
+    printer.paragraph(
+        "dB is the PSNR over RGB against our own raster at "
+        f"{' and '.join(f'{scale}x' for scale in SCALES)}; s is the time of the latter drawing, "
+        "with the start of the program where it is one. Single runs."
+    )
+
+
+def report_mesh(
     printer: Printer,
     photograph: Photograph,
     n: int,
@@ -136,6 +175,60 @@ def drawings(
             yield name, ("missing",) * len(SCALES) + ("-",)
             continue
         yield name, (*cells, f"{seconds:.2f}")
+
+
+def report_peers(
+    printer: Printer, photographs: Sequence[Photograph], vertices: Sequence[int]
+) -> None:
+    """Print what SVG of photographs shows by its bytes, ours beside that of vtracer."""
+    printer.heading("Photographs as SVG")
+    for photograph in photographs:
+        report_documents(printer, photograph, vertices)
+    printer.paragraph(
+        f"dB is the PSNR over RGB against the photograph, drawn by {PEER_RENDERER}; gzipped at "
+        f"the best level; s is the time from pixels to SVG. vtracer {version_of('vtracer')}."
+    )
+
+
+def report_documents(printer: Printer, photograph: Photograph, vertices: Sequence[int]) -> None:
+    """Print the documents of one photograph by their compressed size."""
+    documents = [*meshes_as_svg(photograph, vertices), *tracings_of(photograph)]
+    draw = import_module("tests.formats.renderers").SVG_RENDERERS[PEER_RENDERER]
+    rows = []
+    for document in documents:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "picture.svg")
+            path.write_bytes(document.svg)
+            shown = psnr(draw(path, 1), photograph.pixels)
+        packed = len(gzip.compress(document.svg, 9))
+        rows.append(
+            (
+                packed,
+                (
+                    document.settings,
+                    str(len(document.svg)),
+                    str(packed),
+                    f"{shown:.2f}",
+                    f"{document.seconds:.1f}",
+                ),
+            )
+        )
+    header = ("by", "bytes", "gzipped", "dB", "s")
+    printer.table(Table(photograph.name, header, [row for _, row in sorted(rows)]))
+
+
+def meshes_as_svg(photograph: Photograph, vertices: Sequence[int]) -> Iterator[Tracing]:
+    """SVG of adaptive meshes of a photograph, by numbers of vertices and ways of writing."""
+    for n in vertices:
+        started = time.perf_counter()
+        mesh = vmesh.encode(photograph.pixels, vertices=n)
+        encoded = time.perf_counter() - started
+        for name, options in PEER_MODES.items():
+            stream = io.BytesIO()
+            started = time.perf_counter()
+            write_svg(mesh, stream, **options(photograph))
+            seconds = encoded + time.perf_counter() - started
+            yield Tracing(f"vmesh, {n} vertices, {name}", stream.getvalue(), seconds)
 
 
 if __name__ == "__main__":

@@ -149,6 +149,33 @@ def test_vector_commands_take_meshes_and_photographs(
     assert from_mesh.read_bytes() == from_photograph.read_bytes()
 
 
+def test_a_drawing_has_the_width_that_is_asked_for(file: Path, tmp_path: Path) -> None:
+    drawing = tmp_path / "drawing.svg"
+    succeed("to-svg", file, drawing, "--width", "210mm")
+    assert b'width="210mm" height="140mm"' in drawing.read_bytes()
+    assert "100%" in fail(2, "to-svg", file, drawing, "--height", "tall")
+
+
+def test_a_drawing_is_fitted_to_a_photograph_of_its_size(file: Path, tmp_path: Path) -> None:
+    plain, fitted = tmp_path / "plain.svg", tmp_path / "fitted.svg"
+    succeed("to-svg", file, plain)
+    succeed("to-svg", file, fitted, "--fit", COFFEE)
+    assert fitted.read_bytes() != plain.read_bytes()
+    with Image.open(COFFEE) as image:
+        image.resize((300, 200)).save(tmp_path / "half.png")
+    message = fail(1, "to-svg", file, fitted, "--fit", tmp_path / "half.png")
+    assert "600 x 400 pixels, got 300 x 200" in message
+
+
+def test_edges_of_a_drawing_are_crisp_or_have_an_underlay(file: Path, tmp_path: Path) -> None:
+    drawing = tmp_path / "drawing.svg"
+    for seams, is_crisp in (("crisp", True), ("underlay", False)):
+        succeed("to-svg", file, drawing, "--seams", seams)
+        assert (b"crispEdges" in drawing.read_bytes()) == is_crisp
+    message = fail(2, "to-svg", file, drawing, "--seams", "underlay", "--mode", "auto")
+    assert "crisp edges" in message
+
+
 def test_the_script_of_the_element_is_written_alone(file: Path, tmp_path: Path) -> None:
     script = tmp_path / "vmesh-image.js"
     succeed("to-html", "--element", script)

@@ -29,6 +29,11 @@ def detailed(coffee: np.ndarray) -> vmesh.Mesh:
 
 
 @pytest.fixture(scope="module")
+def small(coffee: np.ndarray) -> vmesh.Mesh:
+    return vmesh.encode(coffee, method="blue-noise", vertices=500)
+
+
+@pytest.fixture(scope="module")
 def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("svg")
     paths = {mode: folder / f"{mode}.svg" for mode in ("gradient", "exact", "auto", "flat")}
@@ -101,11 +106,20 @@ def test_what_is_merged_is_drawn_as_one_region_with_its_holes(tmp_path: Path) ->
     assert np.abs(drawn.astype(int) - vmesh.render(mesh)).max() <= 1
 
 
-@pytest.mark.parametrize("option", [{"tolerance": 0}, {"merge": -1}, {"merge": 1, "mode": "exact"}])
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"tolerance": 0},
+        {"merge": -1},
+        {"merge": 1, "mode": "exact"},
+        {"seams": "none"},
+        {"seams": "underlay", "mode": "auto"},
+    ],
+)
 def test_options_without_sense_are_refused(
     detailed: vmesh.Mesh, option: dict[str, Any], tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=r"expected|merged"):
+    with pytest.raises(ValueError, match=r"expected|merged|underlay"):
         vmesh.export(detailed, tmp_path / "a.svg", **option)
     assert not list(tmp_path.iterdir())
 
@@ -125,6 +139,44 @@ def test_the_title_of_a_photograph_is_told_and_escaped(tmp_path: Path) -> None:
     assert root.findtext(f"{SVG}title") == "cup <& saucer>"
     assert root.findtext(f"{SVG}desc") == "A. Painter"
     assert b"profile" in path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({}, ("600", "400")),
+        ({"width": 900}, ("900", "600")),
+        ({"height": "100.5"}, ("150.75", "100.5")),
+        ({"width": " 210MM "}, ("210mm", "140mm")),
+        ({"width": "100%"}, ("100%", None)),
+        ({"width": "20em", "height": "50%"}, ("20em", "50%")),
+    ],
+)
+def test_a_drawing_shows_at_the_size_that_is_asked_for(
+    small: vmesh.Mesh, asked: dict[str, Any], told: tuple[str | None, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "sized.svg"
+    vmesh.export(small, path, **asked)
+    root = etree.parse(path).getroot()
+    assert (root.get("width"), root.get("height")) == told
+    assert root.get("viewBox") == "0 0 600 400"
+
+
+@pytest.mark.parametrize("renderer", ["librsvg", "resvg", "cairosvg"])
+def test_a_drawing_of_another_size_is_scaled(
+    small: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "half.svg"
+    vmesh.export(small, path, width=300)
+    drawn = SVG_RENDERERS[renderer](path, 1)
+    assert psnr(drawn, vmesh.render(small, scale=0.5)) >= 35.0
+
+
+@pytest.mark.parametrize("length", ["wide", "0", "-3", "5 mm", "5q", "1e9", "2000000", "nan", ""])
+def test_what_is_no_length_is_refused(small: vmesh.Mesh, length: str, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="expected a length such as 800, 210mm or 100%, got"):
+        vmesh.export(small, tmp_path / "a.svg", height=length)
+    assert not list(tmp_path.iterdir())
 
 
 def test_gradients_stay_close_at_four_times_the_size(
@@ -150,6 +202,109 @@ def test_no_seams_show_between_triangles(renderer: str, tmp_path: Path) -> None:
     for scale in (1, 3):
         drawn = SVG_RENDERERS[renderer](path, scale)
         assert np.abs(drawn.astype(int) - mesh.colors[0]).max() <= 1
+
+
+def smoothed(path: Path) -> Path:
+    """The same drawing as a program shows it that smooths all edges, whatever it is told."""
+    copy = path.with_suffix(".smooth.svg")
+    copy.write_bytes(path.read_bytes().replace(b' shape-rendering="crispEdges"', b""))
+    return copy
+
+
+@pytest.mark.parametrize("renderer", SVG_RENDERERS)
+def test_an_underlay_hides_the_seams_of_smooth_edges(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    draw = SVG_RENDERERS[renderer]
+    path = tmp_path / "underlay.svg"
+    vmesh.export(detailed, path, seams="underlay")
+    assert b"shape-rendering" not in path.read_bytes()
+    for scale in (1, 3):
+        crisp = compare(draw(smoothed(drawings["gradient"]), scale), detailed, scale)
+        found = compare(draw(path, scale), detailed, scale)
+        assert found.seams < 0.4 * crisp.seams
+
+
+@pytest.mark.parametrize("renderer", BLENDING)
+def test_exact_drawings_have_an_underlay_too(
+    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+) -> None:
+    draw = SVG_RENDERERS[renderer]
+    path = tmp_path / "underlay.svg"
+    vmesh.export(detailed, path, mode="exact", seams="underlay")
+    crisp = compare(draw(smoothed(drawings["exact"]), 2), detailed, 2)
+    found = compare(draw(path, 2), detailed, 2)
+    assert found.inside <= 1.0
+    assert found.seams < 0.4 * crisp.seams
+
+
+@pytest.mark.parametrize("mode", ["gradient", "exact", "auto", "flat"])
+def test_gradients_fitted_to_the_photograph_are_closer_to_it(
+    coffee: np.ndarray, drawings: dict[str, Path], detailed: vmesh.Mesh, mode: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "fitted.svg"
+    vmesh.export(detailed, path, mode=mode, fit=coffee)
+    draw = SVG_RENDERERS["librsvg"]
+    gain = psnr(draw(path, 1), coffee) - psnr(draw(drawings[mode], 1), coffee)
+    assert gain > (0.0 if mode == "flat" else 1.5)
+
+
+def test_a_photograph_that_the_mesh_draws_is_fitted_as_the_mesh_is(
+    small: vmesh.Mesh, tmp_path: Path
+) -> None:
+    vmesh.export(small, tmp_path / "own.svg", mode="exact")
+    vmesh.export(small, tmp_path / "fitted.svg", mode="exact", fit=vmesh.render(small))
+    draw = SVG_RENDERERS["librsvg"]
+    own, fitted = (draw(tmp_path / f"{name}.svg", 1).astype(int) for name in ("own", "fitted"))
+    assert np.abs(own - fitted).mean() < 0.2
+
+
+@pytest.mark.parametrize("n_pixels", [1, 3])
+def test_triangles_without_pixels_keep_the_colors_of_the_mesh(
+    n_pixels: int, tmp_path: Path
+) -> None:
+    # Each pixel in 128 triangles, hardly any of which holds its centre.
+    steps = np.arange(0, n_pixels * 8 + 1)
+    places = [(x, y) for y in steps for x in steps]
+    side = len(steps)
+    corners = [i for i in range(side * side - side) if i % side < side - 1]
+    quads = [(i, i + 1, i + side + 1, i + side) for i in corners]
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    colors = np.full((len(places), 3), 200, dtype=np.uint8)
+    mesh = vmesh.Mesh.from_colors(n_pixels, n_pixels, places, triangles, colors, subdivision=3)
+    path = tmp_path / "small.svg"
+    vmesh.export(mesh, path, fit=np.zeros((n_pixels, n_pixels, 3), dtype=np.uint8))
+    drawn = SVG_RENDERERS["librsvg"](path, 8)
+    assert (drawn == 200).mean() > 0.8
+    assert (drawn < 190).any()
+
+
+def test_pixels_that_do_not_show_are_not_fitted_to(coffee: np.ndarray, tmp_path: Path) -> None:
+    alpha = np.zeros(coffee.shape[:2], dtype=np.uint8)
+    alpha[:, :300] = 255
+    hidden = np.where(alpha[:, :, None] > 0, coffee, 255 - coffee)
+    mesh = vmesh.encode(np.dstack([coffee, alpha]), vertices=2000)
+    for name, colors in (("plain", coffee), ("inverse", hidden)):
+        vmesh.export(mesh, tmp_path / f"{name}.svg", fit=np.dstack([colors, alpha]))
+    assert (tmp_path / "plain.svg").read_bytes() == (tmp_path / "inverse.svg").read_bytes()
+    drawn = SVG_RENDERERS["librsvg"](tmp_path / "plain.svg", 1)
+    assert psnr(drawn, flatten(np.dstack([coffee, alpha]))) > 25.0
+
+
+@pytest.mark.parametrize(
+    "photograph",
+    [
+        np.zeros((300, 600, 3), dtype=np.uint8),
+        np.zeros((400, 600, 2), dtype=np.uint8),
+        np.zeros((400, 600, 3)),
+    ],
+)
+def test_what_is_no_photograph_of_the_mesh_is_not_fitted_to(
+    small: vmesh.Mesh, photograph: np.ndarray, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match="expected a photograph of"):
+        vmesh.export(small, tmp_path / "a.svg", fit=photograph)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("renderer", BLENDING)  # CairoSVG draws no such mask
@@ -235,3 +390,71 @@ def test_flat_colors_keep_within_the_limits(coffee: np.ndarray, tmp_path: Path) 
         with pytest.raises(vmesh.LimitError):
             vmesh.export(mesh, tmp_path / "a.svg", mode="flat", limits=limits)
     assert not list(tmp_path.iterdir())
+
+
+def of_quads(width: int, height: int, places: Any, colors: Any) -> vmesh.Mesh:
+    """A mesh of the columns between pairs of places, one above the other."""
+    n = len(places) // 2
+    faces = [t for i in range(0, 2 * n - 2, 2) for t in ((i, i + 2, i + 3), (i, i + 3, i + 1))]
+    return vmesh.Mesh.from_colors(width, height, places, faces, np.asarray(colors, np.uint8))
+
+
+EXTREMES = {
+    "a single pixel": of_quads(1, 1, [(0, 0), (0, 1), (1, 0), (1, 1)], [(9, 90, 200)] * 4),
+    "a pair of triangles": of_quads(
+        40, 30, [(0, 0), (0, 30), (40, 0), (40, 30)], np.arange(12).reshape(4, 3) * 20
+    ),
+    "the widest canvas": of_quads(
+        65_535, 2, [(0, 0), (0, 2), (65_535, 0), (65_535, 2)], np.arange(12).reshape(4, 3) * 20
+    ),
+    "slivers": of_quads(
+        300,
+        200,
+        [(0, 0), (0, 200), (1, 0), (299, 200), (300, 0), (300, 200)],
+        np.arange(18).reshape(6, 3) * 14,
+    ),
+    "alpha": of_quads(
+        40, 30, [(0, 0), (0, 30), (40, 0), (40, 30)], np.arange(16).reshape(4, 4) * 16
+    ),
+}
+STYLES: dict[str, dict[str, Any]] = {
+    "gradient": {},
+    "merged": {"merge": 1e3},
+    "exact": {"mode": "exact"},
+    "auto": {"mode": "auto"},
+    "flat": {"mode": "flat"},
+    "underlay": {"mode": "exact", "seams": "underlay"},
+}
+VOCABULARY = etree.RelaxNG(etree.parse(Path(__file__).with_name("svg-vocabulary.rng")))
+
+
+@pytest.mark.parametrize("style", STYLES)
+@pytest.mark.parametrize("name", EXTREMES)
+def test_extreme_meshes_are_drawn_in_every_style(name: str, style: str, tmp_path: Path) -> None:
+    mesh = EXTREMES[name]
+    path = tmp_path / "extreme.svg"
+    vmesh.export(mesh, path, **STYLES[style])
+    VOCABULARY.assertValid(etree.parse(path))
+    if name == "the widest canvas":  # more pixels a side than renderers take
+        return
+    drawn = SVG_RENDERERS["resvg"](path, 4)
+    if STYLES[style].get("mode") in ("exact", "auto"):
+        assert compare(drawn, mesh, 4).inside <= 4.5
+    assert drawn.shape == (4 * mesh.height, 4 * mesh.width, 3)
+
+
+def test_a_document_with_all_that_it_may_hold_keeps_to_the_vocabulary(
+    drawings: dict[str, Path], tmp_path: Path
+) -> None:
+    for path in drawings.values():
+        VOCABULARY.assertValid(etree.parse(path))
+    exif = Image.Exif()
+    exif[270], exif[315] = "title", "author"
+    metadata = vmesh.Metadata(exif=exif.tobytes().removeprefix(b"Exif\0\0"), icc=b"profile")
+    path = tmp_path / "all.svg"
+    mesh = EXTREMES["alpha"].replaced(metadata=metadata)
+    vmesh.export(mesh, path, mode="exact", width="100%")
+    tree = etree.parse(path)
+    VOCABULARY.assertValid(tree)
+    tree.getroot()[-1].set("colour", "red")
+    assert not VOCABULARY.validate(tree)

@@ -9,19 +9,9 @@ import click
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import check_suffix
-from vmesh.cli.vector import convert
+from vmesh.cli.vector import checked_by, convert
 from vmesh.formats.page import points_of
 from vmesh.formats.registry import FORMATS
-
-
-def check_length(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-    """A length, or a usage error if it is none."""
-    if value is not None:
-        try:
-            points_of(value)
-        except ValueError as error:
-            raise click.BadParameter(str(error)) from None
-    return value
 
 
 @click.command("to-pdf")
@@ -37,7 +27,7 @@ def check_length(_: click.Context, __: click.Parameter, value: str | None) -> st
 @click.option(
     "--page-width",
     metavar="LENGTH",
-    callback=check_length,
+    callback=checked_by(points_of),
     help="Such as 210mm, 8.5in or 400pt; else by the picture's EXIF, else a pixel is 1/72 inch.",
 )
 @click.option(

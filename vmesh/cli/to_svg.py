@@ -8,9 +8,11 @@ import click
 
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
-from vmesh.cli.streams import STANDARD, check_suffix
-from vmesh.cli.vector import convert
+from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
+from vmesh.cli.vector import checked_by, convert
 from vmesh.formats.registry import FORMATS, format_of
+from vmesh.formats.svg_size import parse_length
+from vmesh.formats.svg_style import Style
 
 
 @click.command("to-svg")
@@ -37,18 +39,34 @@ from vmesh.formats.registry import FORMATS, format_of
     default=0.0,
     help="In mode gradient, neighbours share one where that adds less squared error, such as 50.",
 )
+@click.option(
+    "--seams",
+    type=click.Choice(("crisp", "underlay")),
+    default="crisp",
+    show_default=True,
+    help="How no seams show; underlay is for programs that smooth all edges, as Qt and Skia.",
+)
+@click.option(
+    "--fit",
+    metavar="PHOTO",
+    help="Fit the gradients to the pixels of this photograph, that the mesh was made of.",
+)
+@click.option(
+    "--width",
+    metavar="LENGTH",
+    callback=checked_by(parse_length),
+    help="Width at which it shows, such as 800, 210mm or 100%; unless given, that of the canvas.",
+)
+@click.option(
+    "--height",
+    metavar="LENGTH",
+    callback=checked_by(parse_length),
+    help="Height; one of the two alone keeps the proportions.",
+)
 @encoder_options
 @limit_options
 @quiet_option
-def command(
-    source: str,
-    target: str,
-    mode: str,
-    tolerance: float,
-    merge: float,
-    quiet: bool,
-    **options: Any,
-) -> None:
+def command(source: str, target: str, fit: str | None, quiet: bool, **options: Any) -> None:
     """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
 
     The options of the encoder apply to photographs.
@@ -56,7 +74,11 @@ def command(
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
-    if merge and mode != "gradient":
-        raise click.UsageError("--merge is for --mode gradient")
-    chosen = {"mode": mode, "tolerance": tolerance, "merge": merge}
-    convert(source, target, wanted, settings, limits, quiet=quiet, **chosen)
+    style = {name: options[name] for name in ("mode", "tolerance", "merge", "seams")}
+    try:
+        Style(**style)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+    if fit is not None:
+        options["fit"] = read_photograph(fit, limits).array
+    convert(source, target, wanted, settings, limits, quiet=quiet, **options)

@@ -6,39 +6,31 @@ drawn exactly, so that three layers, one for each channel, joined by `mix-blend-
 the mesh as it is.
 
 Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
-same to the last digit on both sides (`svg_outlines.py`). Alpha is drawn as a mask of the same make.
+same to the last digit on both sides; or regions reach under their neighbours (`svg_outlines.py`).
+Alpha is drawn as a mask of the same make.
 """
 
 from __future__ import annotations
 
 import gzip
-from collections.abc import Iterator
-from itertools import count, islice, product
-from string import ascii_letters, digits
-from typing import Any, BinaryIO, Final, get_args
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from lxml import etree
 
-from vmesh.arrays import Float64Array, UInt8Array
+from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
-from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
-from vmesh.formats.svg_layers import Layer, Mode, layers_of
-from vmesh.formats.svg_outlines import outlines_of
-from vmesh.formats.svg_regions import Moments
-from vmesh.kernels.scanline import SUBPIXEL, fill, label, measure
+from vmesh.formats.svg_drawing import Drawing
+from vmesh.formats.svg_photograph import Photograph, rgba_of
+from vmesh.formats.svg_size import Length, size_attributes
+from vmesh.formats.svg_style import Mode, Seams, Style
+from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
 _NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _MASK: Final = "_alpha"  # names of gradients have no underscore
-# Pixels by which flat triangles move up and left. A centre that lies on an edge then falls to its
-# right or below it, as in our raster, whatever a program's own rule; gradients would shift too.
-_FLAT_SHIFT: Final = 1 / 16
-_CHUNK: Final = 1 << 12  # elements that are written at a time
-_GRADIENT: Final = '<linearGradient id="{}"{}</linearGradient>'
-_PATH: Final = '<path fill="{}" d="{}"/>'
 _ICC_NOTE: Final = " Colours are numbers in the picture's own profile, which SVG has no place for. "
 
 
@@ -49,6 +41,10 @@ def write_svg(
     mode: Mode = "gradient",
     tolerance: float = 4.0,
     merge: float = 0.0,
+    seams: Seams = "crisp",
+    fit: SampleArray | None = None,
+    width: Length | None = None,
+    height: Length | None = None,
     limits: Limits = DEFAULT_LIMITS,
 ) -> None:
     """Write a mesh as an SVG document.
@@ -65,6 +61,15 @@ def write_svg(
     merge : float
         In mode "gradient", neighbours share one gradient where that adds less than this to the
         squared error, summed over pixels and channels.
+    seams : {"crisp", "underlay"}
+        How no seams show: edges that are not smoothed, or regions that reach under their
+        neighbours, for programs that smooth all edges. Not "underlay" in mode "auto".
+    fit : ndarray, optional
+        The photograph that the mesh was made of, as :func:`vmesh.encode` takes it, in the size of
+        the canvas: gradients are fitted to its pixels instead of to the mesh.
+    width, height : str or float, optional
+        Size at which it shows, in units of CSS such as "210mm" or "100%"; a number counts
+        pixels. One of them alone keeps the proportions; without both a pixel shows as one.
     limits : Limits
         What the mesh may ask for; the colours of flat triangles come from a raster.
 
@@ -74,26 +79,39 @@ def write_svg(
         If an option is none of these, or has no meaning in the mode.
     """
     limits.check_vertices(mesh.n_vertices)
-    _check_options(mode, tolerance, merge)
-    if mode == "flat":
+    style = Style(mode, tolerance, merge, seams)
+    size = size_attributes(mesh, width, height)
+    if mode == "flat" or fit is not None:
         _check_work(mesh, limits)
-    drawing = _Drawing(mesh, stream, mode, tolerance, merge)
-    size = {"width": str(mesh.width), "height": str(mesh.height)}
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
     colors = mesh.plain_colors
+    rgba = None if fit is None else rgba_of(mesh, fit)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
         document.element("svg", root, nsmap={None: _NAMESPACE}),
     ):
         _write_description(document, mesh)
+        drawing = Drawing(mesh, stream, document, style)
         if mesh.n_components == 4:
-            frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **size}
+            whole = {"width": str(mesh.width), "height": str(mesh.height)}
+            frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}
             with document.element("mask", {"id": _MASK, **frame}):
-                drawing.write(document, colors[:, [3, 3, 3]])
+                drawing.write(colors[:, [3, 3, 3]], _channels(rgba, [3, 3, 3]))
             with document.element("g", {"mask": f"url(#{_MASK})"}):
-                drawing.write(document, colors[:, :3])
+                drawing.write(colors[:, :3], _channels(rgba, [0, 1, 2], 3))
         else:
-            drawing.write(document, colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors)
+            rgb = colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors
+            drawing.write(rgb, _channels(rgba, [0, 1, 2]))
+
+
+def _channels(
+    rgba: UInt8Array | None, shown: list[int], weight: int | None = None
+) -> Photograph | None:
+    """Channels of a photograph that are shown, and the one that says how much pixels count."""
+    if rgba is None:
+        return None
+    full = np.full(rgba.shape[:2], 255, dtype=np.uint8)
+    return Photograph(rgba[:, :, shown], full if weight is None else rgba[:, :, weight])
 
 
 def write_svgz(
@@ -105,19 +123,8 @@ def write_svgz(
         write_svg(mesh, compressed, limits=limits, **options)
 
 
-def _check_options(mode: str, tolerance: float, merge: float) -> None:
-    if mode not in get_args(Mode):
-        raise ValueError(f"expected mode to be one of {', '.join(get_args(Mode))}, got {mode!r}")
-    if not 0 < tolerance <= 255:
-        raise ValueError(f"expected a tolerance above 0, of at most 255 levels, got {tolerance}")
-    if not 0 <= merge < np.inf:
-        raise ValueError(f"expected a finite error of 0 or more to merge by, got {merge}")
-    if merge and mode != "gradient":
-        raise ValueError(f"regions are merged in mode gradient only, got mode {mode}")
-
-
 def _check_work(mesh: Mesh, limits: Limits) -> None:
-    """Refuse a raster for flat colours that is larger than what is allowed."""
+    """Refuse a raster, of flat colours or of pixels to fit to, that is larger than allowed."""
     limits.check_pixels(mesh.width, mesh.height)
     positions = scaled_positions(mesh, (mesh.width, mesh.height))
     _, n_rows = measure(positions, mesh.triangles, mesh.height)
@@ -135,90 +142,3 @@ def _write_description(document: etree._IncrementalFileWriter, mesh: Mesh) -> No
             document.write(element)
     if mesh.metadata.icc:
         document.write(etree.Comment(_ICC_NOTE))
-
-
-class _Drawing:
-    """Writes layers of a mesh. Names of gradients are told apart over the whole document.
-
-    What is inside of a layer is written as text, past lxml: elements made one by one took
-    twice as long, and nothing in that text needs escaping.
-    """
-
-    def __init__(
-        self,
-        mesh: Mesh,
-        stream: BinaryIO | gzip.GzipFile,
-        mode: Mode,
-        tolerance: float,
-        merge: float,
-    ) -> None:
-        self._mesh = mesh
-        self._stream = stream
-        self._options = (mode, tolerance, merge)
-        self._names = _names()
-
-    def write(self, document: etree._IncrementalFileWriter, rgb: UInt8Array) -> None:
-        """Write a group that shows colours of shape (n, 3)."""
-        mesh, mode = self._mesh, self._options[0]
-        moments = Moments.of_triangles(mesh, rgb.astype(np.float64))
-        if mode == "flat":
-            moments.means[:, 2:] = _shown_means(mesh, rgb, moments.means[:, 2:])
-        moves = [f"translate({-_FLAT_SHIFT} {-_FLAT_SHIFT})"] if mode == "flat" else []
-        moves += [f"scale({1 / mesh.unit:.9g})"] if mesh.unit > 1 else []
-        group = {"shape-rendering": "crispEdges"}
-        if moves:
-            group["transform"] = " ".join(moves)
-        with document.element("g", group):
-            if mesh.covers_canvas:
-                whole = {name: str(getattr(mesh, name) * mesh.unit) for name in ("width", "height")}
-                mean = hex_colors(np.average(moments.means[:, 2:], 0, moments.weights)[None])[0]
-                document.write(etree.Element("rect", {**whole, "fill": mean}))
-            first, *screened = layers_of(mesh, moments, *self._options)
-            self._write_layer(document, first)
-            for layer in screened:
-                with document.element("g", {"style": "mix-blend-mode:screen"}):
-                    self._write_layer(document, layer)
-
-    def _write_layer(self, document: etree._IncrementalFileWriter, layer: Layer) -> None:
-        """Write the gradients of a layer, and its paths."""
-        outlines = outlines_of(self._mesh, layer.regions)
-        paints = hex_colors(layer.fits.middles)
-        worth, bodies = gradient_bodies(layer, outlines, self._mesh.unit)
-        names = list(islice(self._names, len(worth)))
-        for region, name in zip(worth.tolist(), names, strict=True):
-            paints[region] = f"url(#{name})"
-        if bodies:
-            with document.element("defs"):
-                self._write_text(document, map(_GRADIENT.format, names, bodies))
-        self._write_text(document, map(_PATH.format, paints, outlines.path_data()))
-
-    def _write_text(self, document: etree._IncrementalFileWriter, elements: Iterator[str]) -> None:
-        """Write elements as text, many to a line."""
-        document.flush()
-        while chunk := "".join(islice(elements, _CHUNK)):
-            self._stream.write(chunk.encode("ascii") + b"\n")
-
-
-def _names() -> Iterator[str]:
-    """Names that XML allows, shorter ones first."""
-    for length in count():
-        for letters in product(ascii_letters, *[ascii_letters + digits] * length):
-            yield "".join(letters)
-
-
-def _shown_means(mesh: Mesh, rgb: UInt8Array, means: Float64Array) -> Float64Array:
-    """Mean of the pixels that show each triangle at the canvas's own size, shape (m, 3).
-
-    Crisp edges give a pixel to the triangle that holds its centre, so for small triangles this is
-    closer than the mean over the triangle: by some 3 dB at 20,000 vertices on photographs. Those
-    without a pixel keep that of `means`.
-    """
-    positions = scaled_positions(mesh, (mesh.width, mesh.height))
-    raster = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)
-    fill(positions, mesh.triangles, np.ascontiguousarray(rgb), raster)
-    labels = np.full((mesh.height, mesh.width), mesh.n_triangles, dtype=np.int32)
-    label(positions - round(_FLAT_SHIFT * SUBPIXEL), mesh.triangles, labels)
-    owners, n = labels.ravel(), mesh.n_triangles
-    counts = np.bincount(owners, minlength=n)[:n, None]
-    sums = [np.bincount(owners, raster[:, :, z].ravel(), minlength=n)[:n] for z in range(3)]
-    return np.where(counts > 0, np.stack(sums, axis=1) / np.maximum(counts, 1), means)

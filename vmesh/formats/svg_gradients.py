@@ -14,7 +14,7 @@ and beyond the region as long as there are colours for the values there. Ends at
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -30,14 +30,13 @@ _NAMES: Final = ("x1", "y1", "x2", "y2")
 _DEFAULTS: Final = (0, 0, 1, 0)
 
 
-def gradient_bodies(layer: Layer, outlines: Outlines, unit: int) -> tuple[Int64Array, list[str]]:
+def gradient_bodies(layer: Layer, unit: int) -> tuple[Int64Array, list[str]]:
     """Regions that a flat colour will not do for, and what stands in their gradient elements.
 
     Parameters
     ----------
     layer : Layer
-    outlines : Outlines
-        Of its regions, in units of 1 / `unit` pixel.
+        With outlines in units of 1 / `unit` pixel.
 
     Returns
     -------
@@ -46,19 +45,19 @@ def gradient_bodies(layer: Layer, outlines: Outlines, unit: int) -> tuple[Int64A
     bodies : list of str
         Attributes and content, from behind the id on.
     """
+    outlines = layer.outlines
     spans = _spans(layer.fits, outlines, unit)
     worth = np.flatnonzero(spans[:, 1] - spans[:, 0] >= layer.smallest_range)
     fits, spans = layer.fits.take(worth), spans[worth]
     gamut = _gamut(fits, spans)
-    plane = _plane(fits, outlines.boxes()[worth] / unit)
+    plane = _plane(fits, outlines.boxes[worth] / unit)
     ends = _rounded(_ends(plane, spans, gamut), plane, layer.rounding)
     reached = _kept_in(plane[:, :1] + (ends * plane[:, None, 1:]).sum(axis=2), gamut)
     colors = fits.middles[:, None] + fits.axes[:, None] * reached[:, :, None]
-    texts = zip(hex_colors(colors[:, 0]), hex_colors(colors[:, 1]), strict=True)
-    numbers = np.rint(ends * 10**_MOST_DIGITS).astype(np.int64).reshape(-1, 4).tolist()
+    texts = (hex_colors(colors[:, 0]), hex_colors(colors[:, 1]))
     bodies = [
-        f'{_attributes(places)}><stop stop-color="{first}"/><stop offset="1" stop-color="{last}"/>'
-        for places, (first, last) in zip(numbers, texts, strict=True)
+        f'{places}><stop stop-color="{first}"/><stop offset="1" stop-color="{last}"/>'
+        for places, first, last in zip(_attributes(ends), *texts, strict=True)
     ]
     return worth, bodies
 
@@ -66,7 +65,7 @@ def gradient_bodies(layer: Layer, outlines: Outlines, unit: int) -> tuple[Int64A
 def _spans(fits: Slopes, outlines: Outlines, unit: int) -> Float64Array:
     """Least and largest value on each region, shape (n, 2)."""
     owners = outlines.owners
-    apart = outlines.corners / unit - fits.centers[owners]
+    apart = outlines.bounds / unit - fits.centers[owners]
     values = (apart * fits.slopes[owners]).sum(axis=1)
     low = np.minimum.reduceat(values, outlines.starts)
     high = np.maximum.reduceat(values, outlines.starts)
@@ -130,16 +129,23 @@ def _rounded(ends: Float64Array, plane: Float64Array, tolerance: float) -> Float
     return rounded
 
 
-def _attributes(places: list[int]) -> str:
-    """Attributes of the ends, which are given in units of the last decimal."""
-    return "".join(
-        f' {name}="{_decimal(place)}"'
-        for name, place, default in zip(_NAMES, places, _DEFAULTS, strict=True)
-        if place != default * 10**_MOST_DIGITS
-    )
+def _attributes(ends: Float64Array) -> Iterator[str]:
+    """Attributes of the ends of each gradient."""
+    places = np.rint(ends * 10**_MOST_DIGITS).astype(np.int64).reshape(-1, 4).T
+    columns = map(_attribute, _NAMES, _DEFAULTS, places)
+    return map("".join, zip(*columns, strict=True))
 
 
-@lru_cache(maxsize=1 << 16)
+def _attribute(name: str, default: int, places: Int64Array) -> list[str]:
+    """One attribute of each gradient, empty where it is left out; in units of the last decimal."""
+    numbers, which = np.unique(places, return_inverse=True)
+    texts = [
+        "" if number == default * 10**_MOST_DIGITS else f' {name}="{_decimal(number)}"'
+        for number in numbers.tolist()
+    ]
+    return [texts[i] for i in which.tolist()]
+
+
 def _decimal(place: int) -> str:
     """Shortest text of a number of units of the last decimal."""
     whole, part = divmod(abs(place), 10**_MOST_DIGITS)
@@ -150,11 +156,6 @@ def _decimal(place: int) -> str:
 def hex_colors(colors: Float64Array) -> list[str]:
     """SVG notation of colours of shape (n, 3), short where it can be."""
     levels = np.rint(np.clip(colors, 0, 255)).astype(np.uint8)
-    texts = levels.tobytes().hex()
-    return [_short(texts[i : i + 6]) for i in range(0, len(texts), 6)]
-
-
-def _short(digits: str) -> str:
-    if digits[::2] == digits[1::2]:
-        return f"#{digits[::2]}"
-    return f"#{digits}"
+    digits = levels.tobytes().hex()
+    steps = np.where((levels % 17 == 0).all(axis=1), 2, 1).tolist()
+    return [f"#{digits[6 * i : 6 * i + 6 : step]}" for i, step in enumerate(steps)]

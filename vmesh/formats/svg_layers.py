@@ -9,15 +9,15 @@ their sum.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
+from vmesh.formats.svg_outlines import Outlines, outlines_of
 from vmesh.formats.svg_regions import Moments, Slopes, merge
+from vmesh.formats.svg_style import Style
 from vmesh.mesh import Mesh
-
-Mode = Literal["gradient", "exact", "auto", "flat"]
 
 _SMALLEST_RANGE: Final = 0.5  # levels: less than that a flat colour shows as well
 _ROUNDING: Final = 0.5  # levels that rounded ends of gradients may add, and where they are exact
@@ -33,57 +33,58 @@ class Layer:
 
     Parameters
     ----------
-    regions : ndarray
-        Shape (m,), int64: the region of each triangle, -1 where the layer is empty.
-    fits : Slopes
+    outlines : Outlines
         Of the regions.
+    fits : Slopes
+        What best fills them.
     smallest_range : float
         Levels between the ends of a gradient; below it a flat colour will do.
     rounding : float
         Levels by which rounded ends may change a colour.
     """
 
-    regions: Int64Array
+    outlines: Outlines
     fits: Slopes
     smallest_range: float
     rounding: float
 
 
-def layers_of(
-    mesh: Mesh, moments: Moments, mode: Mode, tolerance: float, largest: float
-) -> list[Layer]:
+def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
     """Layers of a mesh in the order of painting; the second and third are screened.
 
-    `moments` are those of the colours of its triangles; `tolerance` is for mode "auto", `largest`
-    the squared error that a merger may add.
+    `moments` are those of the colours of its triangles.
     """
     split = np.zeros(mesh.n_triangles, dtype=bool)
     smallest, rounding = _SMALLEST_RANGE, _ROUNDING
     regions = np.arange(mesh.n_triangles)
-    if mode == "flat":
+    if style.mode == "flat":
         smallest = np.inf
-    elif mode == "gradient":
-        regions, moments = merge(mesh, moments, largest)
+    elif style.mode == "gradient":
+        regions, moments = merge(mesh, moments, style.merge)
         split = np.zeros(len(moments.weights), dtype=bool)
-    elif mode == "exact":
+    elif style.mode == "exact":
         split[:] = mesh.n_components > 1
         rounding = _EXACT_ROUNDING
     else:
         # A flat colour leaves out both what a gradient shows and what it leaves.
-        smallest = max(smallest, _FLAT_SHARE * tolerance)
-        split = _farthest(mesh, moments) > tolerance - smallest - _RESERVE
+        smallest = max(smallest, _FLAT_SHARE * style.tolerance)
+        split = _farthest(mesh, moments) > style.tolerance - smallest - _RESERVE
     order = _morton_order(moments.means[:, :2])
     # Pixels on an edge go to what is painted last. Those that are split come after all others, so
     # that they win them on the first layer as they do on those that only they are on.
     order = order[np.argsort(split[order], kind="stable")]
     regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
-    layers = [Layer(regions, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
+    lapped = style.seams == "underlay"
+    outlines = outlines_of(mesh, regions, lapped=lapped)
+    layers = [Layer(outlines, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
     if split.any():
-        numbers = np.where(split, np.cumsum(split) - 1, -1)[regions]
+        if not split.all():
+            numbers = np.where(split, np.cumsum(split) - 1, -1)
+            outlines = outlines_of(mesh, numbers[regions], lapped=lapped)
         parts = moments.take(np.flatnonzero(split))
         for channel in (1, 2):
             fits = Slopes.fitted(parts.of_channel(channel, np.ones(len(parts.weights), dtype=bool)))
-            layers.append(Layer(numbers, fits, smallest, rounding))
+            layers.append(Layer(outlines, fits, smallest, rounding))
     return layers
 
 

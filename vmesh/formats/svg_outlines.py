@@ -6,22 +6,27 @@
      |  region     /        (y points down). Nothing is rounded, so that neighbours have the very
      |      ______/         same side: crisp edges then leave no pixel between them, and give each
      |_____|                to the region that holds its centre.
+
+Programs that smooth all edges let what is beneath shine through where two regions meet. For them a
+region laps: each side that it shares with a region painted later is drawn out to the middle of the
+triangle across, where the later region covers it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Int64Array
-from vmesh.kernels.half_edges import find_twins
+from vmesh.arrays import Int64Array
+from vmesh.kernels.half_edges import find_twins, walk_outlines
 from vmesh.mesh import Mesh
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Outlines:
-    """Loops of corners, region after region.
+    """Loops of corners, region after region. Layers with the same regions share one.
 
     Parameters
     ----------
@@ -31,22 +36,27 @@ class Outlines:
         Shape (l,), int64: where each loop starts in `corners`.
     regions : ndarray
         Shape (l,), int64: the region of each loop, ascending from 0 without gaps.
+    bounds : ndarray
+        Shape (k, 2), int64: as `corners`, but with the corner before it for a place that a region
+        has under another one.
     """
 
     corners: Int64Array
     loops: Int64Array
     regions: Int64Array
+    bounds: Int64Array
 
-    @property
+    @cached_property
     def starts(self) -> Int64Array:
         """Where each region starts in `corners`, shape (n,)."""
         return self.loops[np.diff(self.regions, prepend=-1) > 0]
 
-    @property
+    @cached_property
     def owners(self) -> Int64Array:
         """The region of each corner, shape (k,)."""
         return np.repeat(self.regions, np.diff(self.loops, append=len(self.corners)))
 
+    @cached_property
     def boxes(self) -> Int64Array:
         """Left, top, width and height of each region, shape (n, 4), in lattice units."""
         low = np.minimum.reduceat(self.corners, self.starts)
@@ -54,6 +64,14 @@ class Outlines:
         boxes: Int64Array = np.concatenate([low, extent], axis=1)
         return boxes
 
+    def lapped(self, sides: Int64Array, places: Int64Array) -> Outlines:
+        """The same with sides drawn out to a place each; a side has the number of its corner."""
+        corners = np.insert(self.corners, sides + 1, places, axis=0)
+        bounds = np.insert(self.bounds, sides + 1, self.bounds[sides], axis=0)
+        loops = self.loops + np.searchsorted(sides, self.loops)
+        return Outlines(corners, loops, self.regions, bounds)
+
+    @cached_property
     def path_data(self) -> list[str]:
         """Path data of each region; a loop is relative to the one before, a corner too."""
         steps = np.diff(self.corners, axis=0, prepend=0)
@@ -69,42 +87,30 @@ class Outlines:
         return texts
 
 
-def outlines_of(mesh: Mesh, regions: Int64Array) -> Outlines:
-    """Outlines of regions; `regions`, shape (m,), names that of each triangle, or -1 for none."""
-    twins = find_twins(mesh.triangles, mesh.n_vertices).astype(np.int64)
+def outlines_of(mesh: Mesh, regions: Int64Array, *, lapped: bool = False) -> Outlines:
+    """Outlines of regions, which are painted in the order of their numbers.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    regions : ndarray
+        Shape (m,), int64: the region of each triangle, or -1 for none.
+    lapped : bool
+        Whether regions reach under those that are painted after them.
+    """
+    twins = find_twins(mesh.triangles, mesh.n_vertices)
     own = np.repeat(regions, 3)
     across = np.where(twins >= 0, own[twins], -1)
-    following = _following(twins, (across == own) & (own >= 0))
-    outer = np.flatnonzero((across != own) & (own >= 0))
-    ordered, loops = _walked(outer[np.argsort(own[outer], kind="stable")], following)
-    corners = mesh.vertices.astype(np.int64)[mesh.triangles.ravel()[ordered]]
-    return Outlines(corners, loops, own[ordered[loops]])
-
-
-def _following(twins: Int64Array, inner: BoolArray) -> Int64Array:
-    """The half-edge of a region's outline that follows each of them, shape (3 m,)."""
-    half_edges = np.arange(len(twins))
-    successors = np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
-    following = successors.copy()
-    # Turn about the corner, from triangle to triangle, until the region ends.
-    turning = np.flatnonzero(~inner)
-    while len(turning := turning[inner[following[turning]]]):
-        following[turning] = successors[twins[following[turning]]]
-    return following
-
-
-def _walked(outer: Int64Array, following: Int64Array) -> tuple[Int64Array, Int64Array]:
-    """Half-edges of outlines in turn, and where loops start among them."""
-    ordered: list[int] = []
-    loops: list[int] = []
-    after = following.tolist()
-    seen = bytearray(len(after))
-    for start in outer.tolist():
-        edge = start
-        if not seen[edge]:
-            loops.append(len(ordered))
-        while not seen[edge]:
-            seen[edge] = 1
-            ordered.append(edge)
-            edge = after[edge]
-    return np.array(ordered, dtype=np.int64), np.array(loops, dtype=np.int64)
+    inner = across == own
+    outer = np.flatnonzero(~inner & (own >= 0))
+    starts = outer[np.argsort(own[outer], kind="stable")]
+    ordered, loops = walk_outlines(starts, twins, inner)
+    vertices = mesh.vertices.astype(np.int64)
+    corners = vertices[mesh.triangles.ravel()[ordered]]
+    outlines = Outlines(corners, loops, own[ordered[loops]], corners)
+    if not lapped:
+        return outlines
+    under = np.flatnonzero(across[ordered] > own[ordered])
+    above = mesh.triangles[twins[ordered[under]] // 3]
+    middles = (2 * vertices[above].sum(axis=1) + 3) // 6
+    return outlines.lapped(under, middles)

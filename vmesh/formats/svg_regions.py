@@ -55,6 +55,11 @@ class Moments:
         """Those of some regions."""
         return Moments(self.weights[regions], self.means[regions], self.scatters[regions])
 
+    def scaled(self, factors: Float64Array) -> Moments:
+        """The same with other weights; `factors` has shape (n,)."""
+        scatters = self.scatters * factors[:, None, None]
+        return Moments(self.weights * factors, self.means, scatters)
+
     def joined(self, other: Moments) -> Moments:
         """Those of the unions of regions, one by one."""
         weights = self.weights + other.weights

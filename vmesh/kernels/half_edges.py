@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vmesh.arrays import Int32Array
+from vmesh.arrays import BoolArray, Int32Array, Int64Array
 from vmesh.kernels.jit import kernel
 
 
@@ -43,3 +43,44 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
             if e >= 0 and origin[e] == v:
                 twin[arriving] = e
     return twin
+
+
+@kernel
+def walk_outlines(
+    starts: Int64Array, twins: Int32Array, inner: BoolArray
+) -> tuple[Int64Array, Int64Array]:
+    """Loops of half-edges around regions of triangles.
+
+    Parameters
+    ----------
+    starts : ndarray
+        Shape (k,), int64: the half-edges on outlines; a loop starts at the first that is left.
+    twins : ndarray
+        Shape (3 m,), int32: as by :func:`find_twins`.
+    inner : ndarray
+        Shape (3 m,), bool: whether the region goes on across a half-edge.
+
+    Returns
+    -------
+    ordered : ndarray
+        Shape (k,), int64: the half-edges in turn.
+    loops : ndarray
+        Shape (l,), int64: where each loop starts among them.
+    """
+    ordered = np.empty(starts.shape[0], np.int64)
+    loops = np.empty(starts.shape[0], np.int64)
+    seen = np.zeros(twins.shape[0], np.bool_)
+    n, n_loops = 0, 0
+    for e in starts:
+        if not seen[e]:
+            loops[n_loops] = n
+            n_loops += 1
+        while not seen[e]:
+            seen[e] = True
+            ordered[n] = e
+            n += 1
+            e = e - 2 if e % 3 == 2 else e + 1
+            # Turn about the corner, from triangle to triangle, until the region ends.
+            while inner[e]:
+                e = twins[e] - 2 if twins[e] % 3 == 2 else twins[e] + 1
+    return ordered, loops[:n_loops]
