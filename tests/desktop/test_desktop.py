@@ -99,7 +99,8 @@ def test_inkscape_opens_a_mesh(inkscape: str, home: Path, mesh_file: Path) -> No
     source = mesh_file.rename(home / "mesh.vmesh")
     output_of(inkscape, source, f"--export-filename={home / 'drawn.png'}")
     drawn = flatten(np.asarray(Image.open(home / "drawn.png")))
-    assert psnr(drawn, vmesh.render(vmesh.load(source))) > 30
+    # 34 where it shows seams.
+    assert psnr(drawn, vmesh.render(vmesh.load(source))) > 40
 
 
 def test_inkscape_saves_a_drawing_as_a_mesh(inkscape: str, home: Path) -> None:
