@@ -166,7 +166,7 @@ def test_the_density_that_a_picture_has_outside_of_exif_sets_the_page(format_nam
     assert (page.width, page.height) == pytest.approx((60 / 300 * 72, 30 / 150 * 72), rel=1e-3)
 
 
-@pytest.mark.parametrize("density", [{}, {"dpi": (72, 72)}])
+@pytest.mark.parametrize("density", [{}, {"dpi": (72, 72)}, {"dpi": (96, 96)}])
 def test_a_density_that_says_nothing_costs_no_bytes(density: dict[str, tuple[int, int]]) -> None:
     image = Image.fromarray(noise((6, 7, 3)))
     for format_name in ("PNG", "JPEG"):
