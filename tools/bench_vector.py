@@ -182,6 +182,7 @@ def report_peers(
 ) -> None:
     """Print what SVG of photographs shows by its bytes, ours beside that of vtracer."""
     printer.heading("Photographs as SVG")
+    write_svg(vmesh.encode(photographs[0].pixels[:96, :96], vertices=200), io.BytesIO())  # compiles
     for photograph in photographs:
         report_documents(printer, photograph, vertices)
     printer.paragraph(

@@ -48,5 +48,7 @@ def tracings_of(photograph: Photograph) -> Iterator[Tracing]:
             path_precision=1,
         )
         seconds = time.perf_counter() - started
-        settings = f"{shape}, {precision} bits, layers of {difference}, specks of {speckle}"
+        settings = (
+            f"vtracer, {shape}, {precision} bits, layers of {difference}, specks of {speckle}"
+        )
         yield Tracing(settings, svg.encode(), seconds)
