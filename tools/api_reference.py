@@ -2,8 +2,8 @@
 
 ::
 
-    python -m tools.api_reference            write it
-    python -m tools.api_reference --check    status 1 if it is not what the docstrings say
+    python tools/api_reference.py            write it
+    python tools/api_reference.py --check    status 1 if it is not what the docstrings say
 """
 
 from __future__ import annotations
@@ -11,13 +11,13 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-import sys
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
 import click
+from made_document import keep
 
 import vmesh
 
@@ -47,12 +47,7 @@ _ROLE: Final = re.compile(r":\w+:`~?([^`]*)`")
 @click.option("--check", is_flag=True, help="Write nothing; status 1 if the file is out of date.")
 def main(check: bool) -> None:
     """Write docs/api.md."""
-    text = reference()
-    if not check:
-        TARGET.write_text(text, "utf-8")
-    elif TARGET.read_text("utf-8") != text:
-        click.echo("docs/api.md is out of date: run python -m tools.api_reference", err=True)
-        sys.exit(1)
+    keep(TARGET, reference(), "python tools/api_reference.py", check=check)
 
 
 def reference() -> str:

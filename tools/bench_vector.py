@@ -101,10 +101,16 @@ def main(
     printer.paragraph(describe_machine())
 
 
+def renderers_of_the_tests() -> Any:
+    """The module of the tests that draws files with other programs."""
+    if str(_ROOT) not in sys.path:
+        sys.path.append(str(_ROOT))
+    return import_module("tests.formats.renderers")
+
+
 def installed_renderers(wanted: tuple[str, ...]) -> dict[str, dict[str, Any]]:
     """What draws files, by the ending of their names and by the renderer's name."""
-    sys.path.append(str(_ROOT))
-    known = import_module("tests.formats.renderers")
+    known = renderers_of_the_tests()
     tables = {".pdf": known.PDF_RENDERERS, ".svg": known.SVG_RENDERERS}
     return {
         suffix: {name: draw for name, draw in table.items() if not wanted or name in wanted}
@@ -194,7 +200,7 @@ def report_peers(
 def report_documents(printer: Printer, photograph: Photograph, vertices: Sequence[int]) -> None:
     """Print the documents of one photograph by their compressed size."""
     documents = [*meshes_as_svg(photograph, vertices), *tracings_of(photograph)]
-    draw = import_module("tests.formats.renderers").SVG_RENDERERS[PEER_RENDERER]
+    draw = renderers_of_the_tests().SVG_RENDERERS[PEER_RENDERER]
     rows = []
     for document in documents:
         with tempfile.TemporaryDirectory() as folder:

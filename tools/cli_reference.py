@@ -1,6 +1,6 @@
 """Write ``docs/cli.md``, the reference of the command line, from the commands themselves.
 
-``python -m tools.cli_reference`` writes it; a test says when it is out of date.
+``python tools/cli_reference.py`` writes it; a test says when it is out of date.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 import click
+from made_document import keep
 
 from vmesh.cli.main import COMMANDS, cli
 
@@ -17,7 +18,7 @@ TARGET: Final = Path(__file__).parents[1] / "docs" / "cli.md"
 _WIDTH: Final = 90
 _START: Final = """# The command line
 
-Written by `python -m tools.cli_reference` from the commands; not to be edited.
+Written by `python tools/cli_reference.py` from the commands; not to be edited.
 
 The shell completes commands and options once it is told to, by a line in its start-up file:
 
@@ -49,11 +50,7 @@ def _section(command: click.Command, context: click.Context) -> str:
 @click.option("--check", is_flag=True, help="Write nothing; the status is 1 if it is out of date.")
 def main(check: bool) -> None:
     """Write docs/cli.md."""
-    text = reference()
-    if not check:
-        TARGET.write_text(text, "utf-8", newline="\n")
-    elif TARGET.read_text("utf-8") != text:
-        raise click.ClickException("docs/cli.md is out of date: python -m tools.cli_reference")
+    keep(TARGET, reference(), "python tools/cli_reference.py", check=check)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ def register() -> None:
     """Let Pillow open ``.vmesh`` files, and save them with the encoder's settings."""
     Image.register_open(FORMAT, VmeshImageFile, layout.is_vmesh)
     Image.register_save(FORMAT, save)
-    Image.register_extension(FORMAT, ".vmesh")
+    Image.register_extension(FORMAT, layout.FILE_SUFFIX)
     Image.register_mime(FORMAT, MIME_TYPE)
 
 

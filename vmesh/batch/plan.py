@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vmesh.batch.sources import Source
-from vmesh.batch.task import MESH_SUFFIX, Outcome, Task
+from vmesh.batch.task import Outcome, Task
+from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.encoder.settings import Settings
 from vmesh.limits import Limits
 
@@ -39,7 +40,7 @@ def make_plan(
     for path, targets in wanted:
         current = [] if force else [target for target in targets if _is_current(target, path)]
         missing = tuple(str(target) for target in targets if target not in current)
-        made = next((str(target) for target in current if target.suffix == MESH_SUFFIX), None)
+        made = next((str(target) for target in current if target.suffix == FILE_SUFFIX), None)
         if missing:
             tasks.append(Task(str(path), missing, settings, limits, made))
         else:

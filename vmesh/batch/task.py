@@ -9,14 +9,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from vmesh.codec.layout import is_vmesh
+from vmesh.codec.layout import FILE_SUFFIX, is_vmesh
 from vmesh.encoder.settings import Settings
 from vmesh.errors import ImageError, describe
 from vmesh.files import atomic_output
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh
 
-MESH_SUFFIX: Final = ".vmesh"
 WRITING: Final = threading.Lock()
 """Held while a file is written: no time to end the process."""
 
@@ -102,9 +101,9 @@ def _mesh_of(task: Task) -> Mesh:
     if task.mesh is not None:
         return _load(Path(task.mesh).read_bytes(), task.limits)
     data = Path(task.source).read_bytes()
-    if not is_vmesh(data) and Path(task.source).suffix.lower() != MESH_SUFFIX:
+    if not is_vmesh(data) and Path(task.source).suffix.lower() != FILE_SUFFIX:
         return _encode(data, task.settings, task.limits)
-    if any(Path(target).suffix == MESH_SUFFIX for target in task.targets):
+    if any(Path(target).suffix == FILE_SUFFIX for target in task.targets):
         raise ImageError("this is a .vmesh file, a photograph is needed")
     return _load(data, task.limits)
 
@@ -133,7 +132,7 @@ def _write(mesh: Mesh, target: str, limits: Limits) -> None:
     from vmesh.formats.registry import format_of, write_mesh
 
     path, content = Path(target), io.BytesIO()
-    if path.suffix == MESH_SUFFIX:
+    if path.suffix == FILE_SUFFIX:
         dump(mesh, content)
     else:
         write_mesh(mesh, content, format_of(path), limits=limits)

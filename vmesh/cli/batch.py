@@ -18,14 +18,15 @@ from vmesh.batch.cluster import run_on_cluster
 from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
 from vmesh.batch.sources import find_sources
-from vmesh.batch.task import MESH_SUFFIX, Outcome
+from vmesh.batch.task import Outcome
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import mesh_options, quiet_option, take_settings
 from vmesh.cli.progress import Report, show_files
 from vmesh.cli.streams import STANDARD
+from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.registry import FORMATS
 
-_SUFFIXES = (MESH_SUFFIX, *FORMATS)
+_SUFFIXES = (FILE_SUFFIX, *FORMATS)
 
 
 class SuffixesType(click.ParamType[tuple[str, ...]]):

@@ -13,6 +13,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, json_option, quiet_option, take_settings
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
+from vmesh.codec.layout import FILE_SUFFIX
 
 
 @click.command("encode")
@@ -25,7 +26,7 @@ from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_out
 def command(source: str, target: str, as_json: bool, quiet: bool, **options: Any) -> None:
     """Turn a photograph into a .vmesh file."""
     settings, limits = take_settings(options), take_limits(options)
-    check_suffix(target, (".vmesh",))
+    check_suffix(target, (FILE_SUFFIX,))
     if as_json and target == STANDARD:
         raise click.UsageError("--json and the file cannot both go to standard output")
     from vmesh.codec.writer import dumps

@@ -10,6 +10,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import quiet_option
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import check_suffix, write_output
+from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.errors import LimitError
 from vmesh.formats.registry import MESH_SUFFIXES
 from vmesh.limits import MAX_SIDE
@@ -43,7 +44,7 @@ def command(source: str, target: str, color_step: int, quiet: bool, **options: A
         raise click.UsageError(f"{source}: expected a name that ends in {', '.join(MESH_SUFFIXES)}")
     if options["scale"] and (options["width"] or options["height"]):
         raise click.UsageError("expected --scale or a size, not both")
-    check_suffix(target, (".vmesh",))
+    check_suffix(target, (FILE_SUFFIX,))
     from vmesh.codec.writer import dumps
     from vmesh.formats.mesh_import import import_mesh
 

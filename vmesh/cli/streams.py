@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
-from vmesh.codec.layout import is_vmesh
+from vmesh.codec.layout import FILE_SUFFIX, is_vmesh
 from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import atomic_output
 
@@ -73,7 +73,7 @@ def read_photograph(path: str, limits: Limits) -> Picture:
 def read_mesh_or_photograph(path: str, limits: Limits) -> Mesh | Picture:
     """What a file holds, by its content; a name that ends in .vmesh promises a mesh."""
     data = read_input(path)
-    if is_vmesh(data) or Path(path).suffix.lower() == ".vmesh":
+    if is_vmesh(data) or Path(path).suffix.lower() == FILE_SUFFIX:
         return _mesh_of(data, path, limits)
     return _photograph_of(data, path, limits)
 

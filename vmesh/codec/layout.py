@@ -34,6 +34,7 @@ from vmesh.limits import (
     PLAIN_DEPTH,
 )
 
+FILE_SUFFIX: Final = ".vmesh"
 SIGNATURE: Final = b"\x8bVM\r\n"
 VERSION: Final = (1, 0)
 

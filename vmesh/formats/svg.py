@@ -110,8 +110,8 @@ def _channels(
     """Channels of a photograph that are shown, and the one that says how much pixels count."""
     if rgba is None:
         return None
-    full = np.full(rgba.shape[:2], 255, dtype=np.uint8)
-    return Photograph(rgba[:, :, shown], full if weight is None else rgba[:, :, weight])
+    weights = np.full(rgba.shape[:2], 255, np.uint8) if weight is None else rgba[:, :, weight]
+    return Photograph(rgba[:, :, shown], weights)
 
 
 def write_svgz(
