@@ -55,5 +55,5 @@ def command(
     """
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".pdf",))
-    chosen = {"mode": mode, "page_width": page_width, "backend": backend}
+    chosen: dict[str, Any] = {"mode": mode, "page_width": page_width, "backend": backend}
     convert(source, target, FORMATS[".pdf"], settings, limits, quiet=quiet, **chosen)

@@ -76,9 +76,9 @@ def command(source: str, target: str, fit: str | None, quiet: bool, **options: A
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
     style = {name: options[name] for name in ("mode", "tolerance", "merge", "seams")}
     try:
-        Style(**style)
+        n_stages = Style(**style).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
     if fit is not None:
         options["fit"] = read_photograph(fit, limits).array
-    convert(source, target, wanted, settings, limits, quiet=quiet, **options)
+    convert(source, target, wanted, settings, limits, quiet=quiet, n_stages=n_stages, **options)

@@ -39,20 +39,26 @@ def convert(
     limits: Limits,
     *,
     quiet: bool,
+    n_stages: int = 0,
     **options: Any,
 ) -> None:
-    """Write a .vmesh file, or a photograph encoded on the way, in a vector format."""
+    """Write a .vmesh file, or a photograph encoded on the way, in a vector format.
+
+    `n_stages` is how many the writer reports; 0 for one that reports none.
+    """
     from vmesh.encoder.pipeline import count_steps, encode
     from vmesh.mesh import Mesh
 
-    with show_progress("converting", count_steps(settings) + 2, quiet=quiet) as report:
-        report("reading")
-        given = read_mesh_or_photograph(source, limits)
+    given = read_mesh_or_photograph(source, limits)
+    n_steps = 1 if isinstance(given, Mesh) else 1 + count_steps(settings)
+    with show_progress("converting", n_steps + n_stages, quiet=quiet) as report:
         if isinstance(given, Mesh):
             mesh = given
         else:
             mesh = encode(given.array, metadata=given.metadata, progress=report, **asdict(settings))
         report("writing")
+        if n_stages:
+            options["progress"] = report
         write_output(
             target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
         )

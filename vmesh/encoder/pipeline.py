@@ -34,9 +34,7 @@ from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
 from vmesh.encoder.waves import Run, workers
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
-
-Progress = Callable[[str], None]
-"""Called with the name of each stage as it begins, and again as it goes on."""
+from vmesh.progress import Progress, silent
 
 STAGES: Final = ("sampling", "thinning", "refinement", "colors", "rate control")
 
@@ -98,7 +96,7 @@ def encode(
         If the array or a setting is not as described, or if a target cannot be met.
     """
     chosen = Settings(**settings)
-    report = progress or _silent
+    report = progress or silent
     image = with_hidden_colors_replaced(as_image(array))
     if chosen.method == "blue-noise":
         return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
@@ -260,7 +258,3 @@ def _with_vertices(settings: Settings, n_vertices: int) -> Settings:
         density=None,
         vertices=n_vertices,
     )
-
-
-def _silent(stage: str) -> None:
-    """Report nothing."""

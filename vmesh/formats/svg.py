@@ -28,6 +28,7 @@ from vmesh.formats.svg_style import Mode, Seams, Style
 from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
+from vmesh.progress import Progress, silent
 
 _NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _MASK: Final = "_alpha"  # names of gradients have no underscore
@@ -45,6 +46,7 @@ def write_svg(
     fit: SampleArray | None = None,
     width: Length | None = None,
     height: Length | None = None,
+    progress: Progress | None = None,
     limits: Limits = DEFAULT_LIMITS,
 ) -> None:
     """Write a mesh as an SVG document.
@@ -70,6 +72,9 @@ def write_svg(
     width, height : str or float, optional
         Size at which it shows, in units of CSS such as "210mm" or "100%"; a number counts
         pixels. One of them alone keeps the proportions; without both a pixel shows as one.
+    progress : callable, optional
+        Called with the name of each stage as it begins: fitting, and for each layer gradients and
+        paths.
     limits : Limits
         What the mesh may ask for; the colours of flat triangles come from a raster.
 
@@ -91,7 +96,7 @@ def write_svg(
         document.element("svg", root, nsmap={None: _NAMESPACE}),
     ):
         _write_description(document, mesh)
-        drawing = Drawing(mesh, stream, document, style)
+        drawing = Drawing(mesh, stream, document, style, progress or silent)
         if mesh.n_components == 4:
             whole = {"width": str(mesh.width), "height": str(mesh.height)}
             frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}

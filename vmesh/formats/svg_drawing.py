@@ -24,10 +24,12 @@ from vmesh.formats.svg_regions import Moments
 from vmesh.formats.svg_style import Style
 from vmesh.kernels.scanline import SUBPIXEL, fill, label
 from vmesh.mesh import Mesh
+from vmesh.progress import Progress
 
-# Pixels by which flat triangles move up and left. A centre that lies on an edge then falls to its
-# right or below it, as in our raster, whatever a program's own rule; gradients would shift too.
-_FLAT_SHIFT: Final = 1 / 16
+# Pixels by which flat triangles move left and up. A centre that lies on an edge then falls to its
+# right or below it, as in our raster, whatever a program's own rule. Programs round places to 1/64
+# pixel; and hardly an edge is short and has this slope, so that centres on it would stay there.
+_FLAT_SHIFT: Final = (5 / 64, 2 / 64)
 _CHUNK: Final = 1 << 12  # elements that are written at a time
 _GRADIENT: Final = '<linearGradient id="{}"{}</linearGradient>'
 _PATH: Final = '<path fill="{}" d="{}"/>'
@@ -43,6 +45,8 @@ class Drawing:
         What `document` writes to.
     document : lxml's writer of elements
     style : Style
+    report : callable
+        Called with the name of each stage as it begins.
     """
 
     def __init__(
@@ -51,23 +55,26 @@ class Drawing:
         stream: BinaryIO | gzip.GzipFile,
         document: etree._IncrementalFileWriter,
         style: Style,
+        report: Progress,
     ) -> None:
         self._mesh = mesh
         self._stream = stream
         self._document = document
         self._style = style
+        self._report = report
         self._names = _names()
 
     def write(self, rgb: UInt8Array, photograph: Photograph | None = None) -> None:
         """Write a group that shows colours of shape (n, 3), or those of a photograph."""
         mesh, is_crisp = self._mesh, self._style.seams == "crisp"
-        shift = _FLAT_SHIFT if self._style.mode == "flat" and is_crisp else 0.0
+        self._report("fitting")
+        is_moved = self._style.mode == "flat" and is_crisp
         moments = Moments.of_triangles(mesh, rgb.astype(np.float64))
         if photograph is not None:
             moments = photograph.moments(mesh, moments)
-        elif shift:
+        elif is_moved:
             moments.means[:, 2:] = _shown_means(mesh, rgb, moments.means[:, 2:])
-        moves = [f"translate({-shift} {-shift})"] if shift else []
+        moves = ["translate({} {})".format(*(-shift for shift in _FLAT_SHIFT))] if is_moved else []
         moves += [f"scale({1 / mesh.unit:.9g})"] if mesh.unit > 1 else []
         group = {"shape-rendering": "crispEdges"} if is_crisp else {}
         if moves:
@@ -90,6 +97,7 @@ class Drawing:
 
     def _write_layer(self, layer: Layer) -> None:
         """Write the gradients of a layer, and its paths."""
+        self._report("gradients")
         paints = hex_colors(layer.fits.middles)
         worth, bodies = gradient_bodies(layer, self._mesh.unit)
         names = list(islice(self._names, len(worth)))
@@ -98,6 +106,7 @@ class Drawing:
         if bodies:
             with self._document.element("defs"):
                 self._write_text(map(_GRADIENT.format, names, bodies))
+        self._report("paths")
         self._write_text(map(_PATH.format, paints, layer.outlines.path_data))
 
     def _write_text(self, elements: Iterator[str]) -> None:
@@ -125,7 +134,8 @@ def _shown_means(mesh: Mesh, rgb: UInt8Array, means: Float64Array) -> Float64Arr
     raster = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)
     fill(positions, mesh.triangles, np.ascontiguousarray(rgb), raster)
     labels = np.full((mesh.height, mesh.width), mesh.n_triangles, dtype=np.int32)
-    label(positions - round(_FLAT_SHIFT * SUBPIXEL), mesh.triangles, labels)
+    shift = np.rint(np.multiply(_FLAT_SHIFT, SUBPIXEL)).astype(positions.dtype)
+    label(positions - shift, mesh.triangles, labels)
     owners, n = labels.ravel(), mesh.n_triangles
     counts = np.bincount(owners, minlength=n)[:n, None]
     sums = [np.bincount(owners, raster[:, :, z].ravel(), minlength=n)[:n] for z in range(3)]

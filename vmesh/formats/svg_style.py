@@ -42,3 +42,9 @@ class Style:
         # Screening is no sum where smooth edges of split and whole triangles meet.
         if self.seams == "underlay" and self.mode == "auto":
             raise ValueError("mode auto needs crisp edges: no seams by underlay")
+
+    @property
+    def n_stages(self) -> int:
+        """How often a drawing of a picture without alpha reports progress, at most."""
+        n_layers = 3 if self.mode in ("exact", "auto") else 1
+        return 1 + 2 * n_layers

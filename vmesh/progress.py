@@ -1,0 +1,12 @@
+"""How work that takes long says what it is at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+Progress = Callable[[str], None]
+"""Called with the name of each stage as it begins, and again as it goes on."""
+
+
+def silent(_: str) -> None:
+    """Say nothing."""
