@@ -15,12 +15,15 @@ gradient is.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from vmesh.arrays import BoolArray, Float64Array, Int64Array
 from vmesh.kernels.half_edges import find_twins
 from vmesh.mesh import Mesh
+
+_CHUNK: Final = 1 << 14  # unions of regions at a time: each takes some kB on the way
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +76,8 @@ class Moments:
         """The same with black in place of the other channels, in the regions that are chosen."""
         keep = np.ones((len(self.weights), 5))
         keep[chosen, 2:] = np.eye(3)[channel]
-        scatters = self.scatters * keep[:, :, None] * keep[:, None]
+        scatters = self.scatters * keep[:, :, None]
+        scatters *= keep[:, None]
         return Moments(self.weights, self.means * keep, scatters)
 
     def maps(self) -> Float64Array:
@@ -191,10 +195,12 @@ def _neighbors(mesh: Mesh) -> Int64Array:
 
 def _costs(moments: Moments, errors: Float64Array, pairs: Int64Array) -> Float64Array:
     """How much the error grows where pairs of regions join, shape (k,)."""
-    first, second = pairs.T
-    union = moments.take(first).joined(moments.take(second))
-    grown: Float64Array = union.errors() - errors[first] - errors[second]
-    return grown
+    costs = np.empty(len(pairs))
+    for start in range(0, len(pairs), _CHUNK):
+        first, second = pairs[start : start + _CHUNK].T
+        union = moments.take(first).joined(moments.take(second))
+        costs[start : start + _CHUNK] = union.errors() - errors[first] - errors[second]
+    return costs
 
 
 def _mutual(pairs: Int64Array, costs: Float64Array, n_regions: int) -> Int64Array:
