@@ -101,6 +101,33 @@ def test_damage_behind_the_header_shows_when_pixels_are_asked_for(file: Path, cu
             image.load()
 
 
+class Counted(io.BytesIO):
+    """A file that knows how many bytes were read of it."""
+
+    n_read = 0
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        data = super().read(size)
+        self.n_read += len(data)
+        return data
+
+
+def test_opening_reads_the_start_of_a_file_only(coffee: UInt8Array) -> None:
+    mesh = vmesh.encode(coffee, vertices=8000, effort=1)
+    stream = Counted(vmesh.dumps(mesh))
+    with Image.open(stream) as image:
+        assert image.size == (600, 400)
+        assert stream.n_read < len(stream.getvalue()) / 2
+        assert np.array_equal(np.asarray(image), vmesh.render(mesh))
+
+
+def test_metadata_that_are_longer_than_the_start_are_read(mesh: vmesh.Mesh) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, 20_000, dtype=np.uint8).tobytes()
+    data = vmesh.dumps(mesh.replaced(metadata=Metadata(xmp=noise)))
+    with Image.open(io.BytesIO(data)) as image:
+        assert image.info["xmp"] == noise
+
+
 def test_a_huge_canvas_is_stopped_before_it_is_drawn() -> None:
     huge = vmesh.encode(PICTURES["ramp"], vertices=4).transform((900, 0, 0, 900, 0, 0))
     with pytest.raises(Image.DecompressionBombError):

@@ -29,6 +29,7 @@ MIME_TYPE: Final = "image/vnd.vmesh"
 _MODES: Final = {1: "L", 3: "RGB", 4: "RGBA"}
 _DEEP_GREY: Final = "I;16"
 _MOST_SAMPLES: Final = 4  # per pixel and direction of a smaller picture
+_START: Final = 4096  # bytes of a file that are read first
 
 
 def register() -> None:
@@ -40,7 +41,7 @@ def register() -> None:
 
 
 class VmeshImageFile(ImageFile.ImageFile):
-    """A ``.vmesh`` file as an image: its header is read when it is opened, its mesh when drawn."""
+    """A ``.vmesh`` file as an image: opening it reads its header and metadata, drawing the rest."""
 
     format = FORMAT
     format_description = "Photograph as a triangle mesh"
@@ -48,16 +49,17 @@ class VmeshImageFile(ImageFile.ImageFile):
     def _open(self) -> None:
         """Take size, mode and metadata; what is damaged further on shows in `load`."""
         assert self.fp is not None
-        self._data = self.fp.read()
+        start = self.fp.read(_START)
         try:
-            header, _ = layout.read_header(self._data)
+            header, _ = layout.read_header(start)
         except FormatError as error:
             raise SyntaxError(str(error)) from None
         is_deep_grey = header.n_components == 1 and header.depth > PLAIN_DEPTH
         self._mode = _DEEP_GREY if is_deep_grey else _MODES[header.n_components]
         self._canvas = self._size = header.width, header.height
+        self._data = b""
         self._is_drawn = False
-        self.info.update(_info_of(_metadata_of(self._data)))
+        self.info.update(_info_of(_metadata_of(start, self.fp)))
 
     def draft(
         self, mode: str | None, size: tuple[int, int] | None
@@ -86,7 +88,7 @@ class VmeshImageFile(ImageFile.ImageFile):
             self._set_scale(scale)
         if not self._is_drawn:
             try:
-                pixels = _draw(self._data, self.size, self.mode)
+                pixels = _draw(self._whole(), self.size, self.mode)
             except VmeshError as error:
                 raise OSError(str(error)) from None
             if self.fp is not None and self._exclusive_fp:
@@ -96,6 +98,14 @@ class VmeshImageFile(ImageFile.ImageFile):
             self.tile = [ImageFile._Tile("raw", (0, 0, *self.size), 0, self.mode)]
             self._is_drawn = True
         return super().load()
+
+    def _whole(self) -> bytes:
+        """The bytes of the file, which stay at hand for another size."""
+        if not self._data:
+            assert self.fp is not None
+            self.fp.seek(0)
+            self._data = self.fp.read()
+        return self._data
 
     def _set_scale(self, scale: float) -> None:
         """Set the size that is drawn next."""
@@ -134,10 +144,13 @@ def _with_metadata(image: Image.Image, options: dict[str, Any]) -> Image.Image:
     return copy
 
 
-def _metadata_of(data: bytes) -> Metadata:
-    """Metadata of a file, none if it is damaged: `load` says so."""
+def _metadata_of(start: bytes, stream: IO[bytes]) -> Metadata:
+    """Metadata of a file, of which a start is read; none if it is damaged: `load` says so."""
     try:
-        _, (*ancillary, _) = layout.read_file(data)
+        try:
+            ancillary = layout.read_ancillary(start)
+        except FormatError:  # they may be longer
+            ancillary = layout.read_ancillary(start + stream.read())
         return read_metadata(ancillary, DEFAULT_LIMITS, layout.refuse)
     except (FormatError, LimitError):
         return Metadata()

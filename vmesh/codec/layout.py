@@ -233,6 +233,24 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     return header, end + _CHECKSUM.size
 
 
+def read_ancillary(data: bytes) -> list[Chunk]:
+    """The chunks before the mesh of a file, of which this start is known.
+
+    Raises
+    ------
+    FormatError
+        As `read_file`; ``truncated`` if the start ends before the mesh begins.
+    """
+
+    def pass_over(error: FormatError) -> None:
+        if error.code != "truncated":
+            raise error
+
+    _, offset = read_header(data)
+    *ancillary, _ = _iterate_chunks(data, offset, pass_over)
+    return ancillary
+
+
 def read_form(data: bytes, start: int) -> tuple[int, int, int]:
     """The format byte, that of depth and components, and the offset of what follows.
 
