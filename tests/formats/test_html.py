@@ -43,7 +43,6 @@ def page(browser: playwright.Browser) -> Iterator[playwright.Page]:
     """A page for a picture of 600 x 400; a message in its console fails the test."""
     context = browser.new_context(viewport={"width": 600, "height": 400 + BAR})
     page = context.new_page()
-    page.set_default_timeout(5000)
     messages: list[str] = []
     page.on("console", lambda message: messages.append(message.text))
     page.on("pageerror", lambda error: messages.append(str(error)))
@@ -86,6 +85,16 @@ def test_a_page_without_webgl_shows_the_exact_raster(
         assert not np.array_equal(pixels_of(stage), before)
 
 
+def test_a_page_without_webgl_draws_triangles_anew_when_it_enlarges(
+    page: playwright.Page, mesh: vmesh.Mesh, tmp_path: Path
+) -> None:
+    page.add_init_script(NO_WEBGL)
+    page.set_viewport_size({"width": 1000, "height": 600 + BAR})
+    stage = show(page, exported(mesh, tmp_path), tmp_path)
+    enlarged = np.asarray(vmesh.render(mesh, scale=1.5))
+    assert psnr(pixels_of(stage)[:, 50:950], enlarged) > 55
+
+
 @pytest.mark.parametrize("name", ["grey", "12-bits-grey", "16-bits-extremes", "rgba", "one-pixel"])
 @pytest.mark.parametrize("has_webgl", [True, False])
 def test_samples_of_all_kinds_are_shown(
@@ -125,9 +134,12 @@ def test_a_picture_keeps_filling_its_stage(
     assert psnr(pixels_of(stage), np.asarray(vmesh.render(mesh, scale=0.5))) > 40
 
 
+@pytest.mark.parametrize("has_webgl", [True, False])
 def test_the_wheel_zooms_at_the_pointer_to_64_times_without_blur(
-    page: playwright.Page, coffee: UInt8Array, tmp_path: Path
+    page: playwright.Page, coffee: UInt8Array, tmp_path: Path, has_webgl: bool
 ) -> None:
+    if not has_webgl:
+        page.add_init_script(NO_WEBGL)
     mesh = vmesh.encode(coffee[100:160, 200:290], vertices=500, effort=2)
     stage = show(page, exported(mesh, tmp_path), tmp_path)
     page.mouse.move(200, 160)

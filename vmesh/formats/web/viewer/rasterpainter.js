@@ -1,7 +1,8 @@
-/** Draws meshes without WebGL: the decoder's own raster, with square pixels where it is enlarged. */
+/** Draws meshes without WebGL: the decoder's own raster, or triangle by triangle if enlarged. */
 
 import { render } from "../vmesh.js";
 import { endsOf } from "./edges.js";
+import { drawEnlarged } from "./enlarge.js";
 
 export class RasterPainter {
   /** @param {CanvasRenderingContext2D} context */
@@ -26,9 +27,14 @@ export class RasterPainter {
     const { columns, rows, left, top, scaleX, scaleY } = frame;
     if (this.canvas.width !== columns) this.canvas.width = columns;
     if (this.canvas.height !== rows) this.canvas.height = rows;
-    context.clearRect(0, 0, columns, rows);
-    context.imageSmoothingEnabled = scaleX < 1;
-    context.drawImage(this.picture, left, top, mesh.width * scaleX, mesh.height * scaleY);
+    if (scaleX > 1 || scaleY > 1) {
+      const image = context.createImageData(columns, rows);
+      drawEnlarged(mesh, frame, image);
+      context.putImageData(image, 0, 0);
+    } else {
+      context.clearRect(0, 0, columns, rows);
+      context.drawImage(this.picture, left, top, mesh.width * scaleX, mesh.height * scaleY);
+    }
     const unit = 2 ** mesh.subdivision;
     const place = (v) => [
       left + (mesh.vertices[2 * v] / unit) * scaleX,

@@ -1,0 +1,94 @@
+/**
+ * Pixels of a mesh at any scale: each has the colour of the mesh at its centre, in floating point.
+ *
+ *             .  a        A triangle is drawn row by row, between the places where its sides cross
+ *           . |  \        the middle of the row. A side is followed from its upper end to its lower
+ *     - - -+--+---+- -    one for both of its triangles, so that they meet in the same place and no
+ *        .     |   \      pixel is left out.
+ *      c . . . . .  b
+ */
+
+/**
+ * @param {import("../vmesh.js").Mesh} mesh
+ * @param {object} frame columns and rows of the image; left, top, scaleX, scaleY of the picture
+ * @param {ImageData} image of the size of the frame, transparent
+ */
+export function drawEnlarged(mesh, frame, image) {
+  const { triangles } = mesh;
+  const places = placesOf(mesh, frame);
+  const colors = colorsOf(mesh);
+  const corners = [0, 0, 0];
+  for (let at = 0; at < triangles.length; at += 3) {
+    for (let i = 0; i < 3; i++) corners[i] = triangles[at + i];
+    drawTriangle(corners, places, colors, image);
+  }
+}
+
+/** Where vertices are in the image: x and y of each. */
+function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY }) {
+  const unit = 2 ** subdivision;
+  const places = new Float64Array(vertices.length);
+  for (let i = 0; i < vertices.length; i += 2) {
+    places[i] = left + (vertices[i] / unit) * scaleX;
+    places[i + 1] = top + (vertices[i + 1] / unit) * scaleY;
+  }
+  return places;
+}
+
+/** Red, green, blue and alpha of each vertex, 255 for the largest sample. */
+function colorsOf({ samples, steps, depth }) {
+  const n = steps.length;
+  const gain = 255 / (2 ** depth - 1);
+  const colors = new Float64Array((4 * samples.length) / n).fill(255);
+  for (let v = 0; v < samples.length / n; v++) {
+    for (let i = 0; i < Math.max(n, 3); i++) {
+      colors[4 * v + i] = samples[n * v + (n === 1 ? 0 : i)] * gain;
+    }
+  }
+  return colors;
+}
+
+function drawTriangle(corners, places, colors, image) {
+  const [a, b, c] = corners.map((v) => [places[2 * v], places[2 * v + 1]]);
+  const first = firstCentre(Math.min(a[1], b[1], c[1]), image.height);
+  const end = firstCentre(Math.max(a[1], b[1], c[1]), image.height);
+  const isBeside = Math.max(a[0], b[0], c[0]) < 0 || Math.min(a[0], b[0], c[0]) > image.width;
+  if (first === end || isBeside) return;
+  const [bx, by, cx, cy] = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
+  const det = bx * cy - by * cx;
+  const planes = [0, 1, 2, 3].map((i) => {
+    const base = colors[4 * corners[0] + i];
+    const toB = colors[4 * corners[1] + i] - base;
+    const toC = colors[4 * corners[2] + i] - base;
+    const perColumn = (toB * cy - toC * by) / det;
+    const perRow = (toC * bx - toB * cx) / det;
+    return { perColumn, perRow, atOrigin: base - perColumn * a[0] - perRow * a[1] };
+  });
+  for (let y = first; y < end; y++) {
+    const crossings = [crossing(a, b, y + 0.5), crossing(b, c, y + 0.5), crossing(c, a, y + 0.5)];
+    const [low, high] = crossings.filter((x) => x !== null).sort((x, other) => x - other);
+    fillRow(planes, y, firstCentre(low, image.width), firstCentre(high, image.width), image);
+  }
+}
+
+/** The first pixel of so many whose centre is not before a place; their number if there is none. */
+function firstCentre(place, count) {
+  return Math.min(Math.max(Math.ceil(place - 0.5), 0), count);
+}
+
+/** Where the side from u to v crosses a row, or null where it does not; its upper end is on it. */
+function crossing(u, v, y) {
+  const [upper, lower] = u[1] < v[1] ? [u, v] : [v, u];
+  if (y < upper[1] || y >= lower[1]) return null;
+  const share = (y - upper[1]) / (lower[1] - upper[1]);
+  return upper[0] + share * (lower[0] - upper[0]);
+}
+
+function fillRow(planes, y, start, end, { data, width }) {
+  planes.forEach(({ perColumn, perRow, atOrigin }, i) => {
+    const atRow = atOrigin + perRow * (y + 0.5);
+    for (let x = start; x < end; x++) {
+      data[4 * (y * width + x) + i] = atRow + perColumn * (x + 0.5); // which is rounded, and clamped
+    }
+  });
+}
