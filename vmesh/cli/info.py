@@ -9,9 +9,8 @@ import click
 
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input
-from vmesh.codec import layout
+from vmesh.codec.contents import describe
 from vmesh.errors import FormatError, LimitError
-from vmesh.limits import Limits
 
 
 @click.command("info")
@@ -34,45 +33,6 @@ def command(source: str, by_parts: bool, as_json: bool, **options: int) -> None:
     except LimitError as error:
         raise LimitError(f"{source}: {error}") from None
     click.echo(json.dumps(figures) if as_json else _table(figures))
-
-
-def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
-    """Figures of a file whose frame and header are sound; its mesh is decoded only for its parts.
-
-    The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
-    tags and checksums, is the frame.
-    """
-    header, chunks = layout.read_file(data)
-    figures: dict[str, Any] = {
-        "version": layout.version_name(data[len(layout.SIGNATURE)]),
-        "width": header.width,
-        "height": header.height,
-        "components": layout.COMPONENT_NAMES[header.n_components],
-        "depth": header.depth,
-        "color_steps": list(header.steps),
-        "subdivision": header.subdivision,
-        "vertices": header.n_vertices,
-        "connectivity": layout.CONNECTIVITY_NAMES[header.connectivity],
-        "bytes": len(data),
-        "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
-    }
-    parts = [("frame", len(data) - sum(len(chunk.content) for chunk in chunks))]
-    parts += [(layout.CHUNK_NAMES.get(c.tag, c.tag.decode()), len(c.content)) for c in chunks]
-    if by_parts:
-        from vmesh.codec.reader import measure
-
-        mesh, sizes = measure(data, limits=limits)
-        figures["triangles"] = mesh.n_triangles
-        parts[-1:] = sizes.items()
-    figures["parts"] = [
-        {
-            "part": name,
-            "bytes": size,
-            "bits_per_vertex": round(8 * size / header.n_vertices, 3),
-        }
-        for name, size in parts
-    ]
-    return figures
 
 
 def _table(figures: dict[str, Any]) -> str:
