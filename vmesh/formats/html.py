@@ -19,6 +19,8 @@ from vmesh.formats.description import Description
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 
+VIEWER: Final = WEB / "viewer"
+
 _DC: Final = "{http://purl.org/dc/elements/1.1/}"
 _ITEM: Final = "{http://www.w3.org/1999/02/22-rdf-syntax-ns#}li"
 
@@ -45,12 +47,15 @@ def write_html(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS)
 
 def page_of(data: bytes, name: str) -> str:
     """The page that shows the bytes of a ``.vmesh`` file, or says what is wrong with them."""
-    viewer = WEB / "viewer"
-    return Template((viewer / "page.html").read_text("utf-8")).substitute(
-        name=escape(name),
-        style=(viewer / "page.css").read_text("utf-8"),
-        data=base64.b64encode(data).decode(),
-        script=bundle("viewer/page.js"),
+    return fill_page("page", name=escape(name), data=base64.b64encode(data).decode())
+
+
+def fill_page(page: str, **texts: str) -> str:
+    """A page of the viewer with its style, its script and some texts, which are markup."""
+    return Template((VIEWER / f"{page}.html").read_text("utf-8")).substitute(
+        texts,
+        style=(VIEWER / f"{page}.css").read_text("utf-8"),
+        script=bundle(f"viewer/{page}.js"),
     )
 
 

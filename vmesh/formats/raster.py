@@ -19,7 +19,7 @@ from vmesh.mesh import Matrix, Mesh, Metadata, Placement
 MAX_SUPERSAMPLE: Final = 16
 
 _BAND_PIXELS: Final = 1 << 22  # drawn at a time when supersampling
-_LONGEST_SIDES: Final = {"JPEG": 65_500, "WEBP": 16_383}
+LONGEST_SIDES: Final = {"JPEG": 65_500, "WEBP": 16_383}
 _DEEP_FORMATS: Final = ("PNG", "TIFF")
 _WHITE: Final = (255, 255, 255)
 _ICC_SPACES: Final = {1: b"GRAY", 3: b"RGB ", 4: b"RGB "}
@@ -143,9 +143,9 @@ def write_raster(
         n_bits = 16 if raster.ndim == 2 and format_name in _DEEP_FORMATS else 8
         raster = rescale(raster, depth, n_bits)
     image = Image.fromarray(raster)
-    if max(image.size) > _LONGEST_SIDES.get(format_name, MAX_SIDE):
+    if max(image.size) > LONGEST_SIDES.get(format_name, MAX_SIDE):
         raise ValueError(
-            f"{format_name} holds sides of at most {_LONGEST_SIDES[format_name]} pixels, "
+            f"{format_name} holds sides of at most {LONGEST_SIDES[format_name]} pixels, "
             f"got {image.width} x {image.height}"
         )
     if format_name == "JPEG" and image.mode == "RGBA":

@@ -6,12 +6,7 @@
  */
 
 import { decode } from "../vmesh.js";
-import { painterFor } from "./painter.js";
-
-const MOST_SIDE = 8192; // of a canvas
-
-/** One for all elements: browsers keep no more than 16 WebGL contexts. */
-let sharedPainter;
+import { paintWhole } from "./sharedpainter.js";
 
 class VmeshImage extends HTMLElement {
   static observedAttributes = ["src", "alt"];
@@ -112,18 +107,9 @@ canvas { display: ${this.mesh ? "block" : "none"}; width: 100%; height: 100%;
   }
 
   draw() {
-    const { mesh, canvas } = this;
-    if (!mesh) return;
-    const { clientWidth, clientHeight } = this;
-    if (clientWidth === 0 || clientHeight === 0) return;
-    const [columns, rows] = sizeFor(mesh, this, getComputedStyle(this).objectFit);
-    canvas.width = columns;
-    canvas.height = rows;
-    sharedPainter ??= painterFor(document.createElement("canvas"));
-    sharedPainter.setMesh(mesh);
-    const [scaleX, scaleY] = [columns / mesh.width, rows / mesh.height];
-    sharedPainter.draw({ columns, rows, left: 0, top: 0, scaleX, scaleY });
-    canvas.getContext("2d").drawImage(sharedPainter.canvas, 0, 0);
+    if (!this.mesh || this.clientWidth === 0 || this.clientHeight === 0) return;
+    const [columns, rows] = sizeFor(this.mesh, this, getComputedStyle(this).objectFit);
+    paintWhole(this.mesh, this.canvas, columns, rows);
   }
 }
 
@@ -133,12 +119,10 @@ function sizeFor({ width, height }, { clientWidth, clientHeight }, fit) {
   const contained = Math.min(x, y);
   const isNative = fit === "none" || (fit === "scale-down" && contained >= 1);
   const scales = { fill: [x, y], cover: [Math.max(x, y), Math.max(x, y)] };
-  const sizes = (scales[fit] ?? [contained, contained]).map((scale, axis) => {
+  if (isNative) return [width, height];
+  return (scales[fit] ?? [contained, contained]).map((scale, axis) => {
     return (axis === 0 ? width : height) * scale * devicePixelRatio;
   });
-  const shrink = Math.min(1, MOST_SIDE / Math.max(...sizes));
-  if (isNative) return [width, height];
-  return sizes.map((size) => Math.max(1, Math.round(size * shrink)));
 }
 
 customElements.define("vmesh-image", VmeshImage);

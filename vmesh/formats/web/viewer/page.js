@@ -1,6 +1,7 @@
 /** The page that shows the `.vmesh` file inside it, or one that is dropped on it. */
 
 import { decode } from "../vmesh.js";
+import { bytesIn } from "./embedded.js";
 import { listenToGestures } from "./gestures.js";
 import { painterFor } from "./painter.js";
 import { View } from "./view.js";
@@ -104,6 +105,5 @@ function exactSide(length, told) {
 }
 
 const picture = document.getElementById("picture");
-const letters = atob(picture.textContent.trim());
 const page = new Page();
-page.show(Uint8Array.from(letters, (letter) => letter.charCodeAt(0)), picture.dataset.name);
+page.show(bytesIn(picture), picture.dataset.name);

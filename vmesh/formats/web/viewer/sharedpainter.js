@@ -1,0 +1,26 @@
+/** One painter for many canvases of a page: browsers keep no more than 16 WebGL contexts. */
+
+import { painterFor } from "./painter.js";
+
+const MOST_SIDE = 8192; // of a canvas
+
+let painter;
+
+/**
+ * Makes a mesh fill a canvas, which gets so many columns and rows; fewer where they are too many.
+ *
+ * @param {import("../vmesh.js").Mesh} mesh
+ * @param {HTMLCanvasElement} canvas
+ * @param {object} [marks] as a painter's `draw` takes them
+ */
+export function paintWhole(mesh, canvas, columns, rows, marks) {
+  const shrink = Math.min(1, MOST_SIDE / Math.max(columns, rows));
+  [columns, rows] = [columns, rows].map((side) => Math.max(1, Math.round(side * shrink)));
+  canvas.width = columns;
+  canvas.height = rows;
+  painter ??= painterFor(document.createElement("canvas"));
+  painter.setMesh(mesh);
+  const [scaleX, scaleY] = [columns / mesh.width, rows / mesh.height];
+  painter.draw({ columns, rows, left: 0, top: 0, scaleX, scaleY }, marks);
+  canvas.getContext("2d").drawImage(painter.canvas, 0, 0);
+}
