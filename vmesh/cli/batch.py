@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import os
-import sys
 from collections.abc import Iterable
 from dataclasses import asdict
 from itertools import chain
@@ -19,10 +17,11 @@ from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
 from vmesh.batch.sources import find_sources
 from vmesh.batch.task import Outcome
+from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import mesh_options, quiet_option, take_settings
 from vmesh.cli.progress import Report, show_files
-from vmesh.cli.streams import STANDARD
+from vmesh.cli.streams import STANDARD, check_folder
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.registry import FORMATS
 
@@ -119,10 +118,7 @@ def command(
         outcomes = run_on_cluster(tasks, scheduler)
     with show_files("batch", len(tasks), quiet=quiet) as report:
         failed = show_outcomes(chain(skipped, outcomes), report, as_json=as_json)
-    for outcome in failed:
-        click.echo(f"vmesh: {sentence_of(outcome)}", err=True)
-    if failed:
-        sys.exit(1)
+    end_with((outcome.source, outcome.error or "") for outcome in failed)
 
 
 def absolute(path: str) -> str:
@@ -131,10 +127,9 @@ def absolute(path: str) -> str:
 
 
 def make_folder(path: str) -> None:
-    """Make a folder, and refuse one that cannot be written before hours are spent on its files."""
+    """Make a folder, or refuse one that cannot be written."""
     Path(path).mkdir(parents=True, exist_ok=True)
-    if not os.access(path, os.W_OK | os.X_OK):
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+    check_folder(path)
 
 
 def show_outcomes(outcomes: Iterable[Outcome], report: Report, *, as_json: bool) -> list[Outcome]:
@@ -148,9 +143,3 @@ def show_outcomes(outcomes: Iterable[Outcome], report: Report, *, as_json: bool)
         if outcome.status == "failed":
             failed.append(outcome)
     return failed
-
-
-def sentence_of(failed: Outcome) -> str:
-    """What went wrong with which source; errors of the system name it themselves."""
-    error = failed.error or ""
-    return error if error.startswith(failed.source) else f"{failed.source}: {error}"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import io
+import os
 import sys
 import warnings
 from collections.abc import Callable
@@ -50,6 +52,13 @@ def check_suffix(path: str, suffixes: tuple[str, ...]) -> None:
     """Refuse an output whose name does not end in one of `suffixes`."""
     if path != STANDARD and Path(path).suffix.lower() not in suffixes:
         raise click.UsageError(f"{path}: expected a name that ends in {', '.join(suffixes)}")
+
+
+def check_folder(path: str) -> None:
+    """Refuse a folder that cannot be written, before time is spent on what it should hold."""
+    Path(path).stat()
+    if not os.access(path, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
 
 
 def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:
