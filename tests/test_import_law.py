@@ -74,6 +74,19 @@ def test_only_the_kernels_import_numba() -> None:
         assert not uses or path.parent.name == "kernels", path
 
 
+def test_only_the_plots_of_a_report_import_matplotlib() -> None:
+    uses = [
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob("*.py")
+        if any(name.split(".")[0] == "matplotlib" for name in imports_of(path))
+    ]
+    assert uses == ["report/plot.py"]
+
+
+def test_matplotlib_waits_until_a_plot_is_drawn() -> None:
+    assert "matplotlib" not in modules_after("import vmesh.cli.report, vmesh.report.page")
+
+
 @pytest.mark.parametrize("name", ["mesh.py", "color_lattice.py", "limits.py", "errors.py"])
 def test_the_ground_floor_imports_no_floor_above(name: str) -> None:
     above = ("vmesh.kernels", "vmesh.codec", "vmesh.encoder", "vmesh.formats", "vmesh.cli")

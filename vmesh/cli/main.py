@@ -25,6 +25,7 @@ COMMANDS: Final = {
     "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),
     "batch": ("batch", "Encode many photographs, and turn them into other formats."),
     "inspect": ("inspect", "Draw the stages of an encoding."),
+    "report": ("report", "Compare photographs with their meshes, on one page."),
     "compare": ("compare", "Measure how close two pictures or meshes are."),
 }
 

@@ -1,0 +1,28 @@
+"""Studies of small pictures, which take a moment each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from vmesh.arrays import SampleArray
+from vmesh.encoder.settings import Settings
+from vmesh.formats.picture import Picture
+from vmesh.limits import DEFAULT_LIMITS
+from vmesh.mesh import Metadata
+from vmesh.report.study import Study, study
+
+
+def study_of(
+    pixels: SampleArray,
+    name: str = "photo.png",
+    metadata: Metadata | None = None,
+    **settings: Any,
+) -> Study:
+    """What a report says of a picture, at effort 1 unless another is given."""
+    return study(
+        name,
+        Picture(pixels, metadata or Metadata()),
+        Settings(**({"effort": 1} | settings)),
+        limits=DEFAULT_LIMITS,
+        progress=lambda stage: None,
+    )

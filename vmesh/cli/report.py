@@ -1,0 +1,71 @@
+"""``vmesh report``: photographs beside their meshes, with plots and figures, on one page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from vmesh.cli.failures import end_with
+from vmesh.cli.limits import limit_options, take_limits
+from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.progress import Report, show_progress
+from vmesh.cli.streams import STANDARD, check_folder, check_suffix, read_photograph, write_output
+from vmesh.errors import VmeshError, describe
+
+if TYPE_CHECKING:
+    from vmesh.encoder.settings import Settings
+    from vmesh.limits import Limits
+
+
+@click.command("report")
+@click.argument("sources", metavar="INPUT...", nargs=-1, required=True)
+@click.option("-o", "--output", "target", metavar="OUTPUT.html", required=True, help="The page.")
+@encoder_options
+@limit_options
+@quiet_option
+def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) -> None:
+    """Compare photographs with their meshes and with other codecs, on one page.
+
+    The page needs nothing else: the photograph and its mesh side by side, a plot of PSNR over bytes
+    against JPEG, WebP and AVIF, the bytes of each part, and times. Plots need matplotlib:
+    pip install matplotlib.
+
+    A photograph that fails is left out and told at the end, and the status is 1.
+    """
+    settings, limits = take_settings(options), take_limits(options)
+    check_suffix(target, (".html", ".htm"))
+    if target != STANDARD:
+        check_folder(str(Path(target).parent))
+    from vmesh.report.page import page_of
+    from vmesh.report.plot import check_matplotlib
+    from vmesh.report.study import count_study_steps
+
+    check_matplotlib()
+    n_steps = len(sources) * (1 + count_study_steps(settings)) + 1
+    sections: list[str] = []
+    failures: list[tuple[str, str]] = []
+    with show_progress("reporting", n_steps, quiet=quiet) as report:
+        for number, source in enumerate(sources):
+            try:
+                sections.append(make_section(source, number, settings, limits, report))
+            except (VmeshError, OSError, ValueError, MemoryError) as error:
+                failures.append((source, describe(error)))
+        if sections:
+            report("writing")
+            write_output(target, lambda stream: stream.write(page_of(sections)))
+    end_with(failures)
+
+
+def make_section(
+    source: str, number: int, settings: Settings, limits: Limits, report: Report
+) -> str:
+    """The section of the page on one photograph."""
+    from vmesh.report.page import section_of
+    from vmesh.report.study import study
+
+    report("reading")
+    picture = read_photograph(source, limits)
+    name = "standard input" if source == STANDARD else Path(source).name
+    return section_of(study(name, picture, settings, limits=limits, progress=report), number)

@@ -1,0 +1,42 @@
+/** A report: meshes beside their photographs, with a divider to drag. */
+
+import { decode } from "../vmesh.js";
+import { bytesIn } from "./embedded.js";
+import { paintWhole } from "./sharedpainter.js";
+
+class Comparison {
+  constructor(section) {
+    this.stage = section.querySelector(".stage");
+    this.canvas = section.querySelector("canvas");
+    this.photographColumns = this.canvas.width;
+    this.wireframe = false;
+    this.mesh = decode(bytesIn(section.querySelector("script")));
+    const divider = section.querySelector("input");
+    divider.addEventListener("input", () => this.divide(divider.value));
+    const button = section.querySelector("button");
+    button.addEventListener("click", () => this.toggle(button));
+    new ResizeObserver(() => this.draw()).observe(this.stage);
+    this.divide(divider.value); // where the browser kept it when the page was loaded again
+  }
+
+  /** Shows the photograph on the left of a place, in percent, and the mesh on the right of it. */
+  divide(place) {
+    this.stage.style.setProperty("--place", `${place}%`);
+  }
+
+  toggle(button) {
+    this.wireframe = !this.wireframe;
+    button.setAttribute("aria-pressed", this.wireframe);
+    this.draw();
+  }
+
+  draw() {
+    const { mesh, canvas, wireframe } = this;
+    const shown = Math.round(this.stage.clientWidth * devicePixelRatio);
+    // The browser reduces the mesh as the photograph, but lines should not fade by that.
+    const columns = wireframe ? shown : Math.max(shown, this.photographColumns);
+    paintWhole(mesh, canvas, columns, (columns * mesh.height) / mesh.width, { wireframe });
+  }
+}
+
+for (const section of document.querySelectorAll("section")) new Comparison(section);

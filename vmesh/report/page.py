@@ -1,0 +1,95 @@
+"""Studies -> one self-contained page: pictures to compare, plots and tables."""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from collections.abc import Iterable
+from html import escape
+from string import Template
+from typing import Final
+
+from vmesh.arrays import UInt8Array
+from vmesh.formats.description import Description
+from vmesh.formats.html import VIEWER, fill_page
+from vmesh.formats.picture import resize
+from vmesh.formats.raster import write_raster
+from vmesh.report.plot import plot_curves
+from vmesh.report.rivals import DESCRIPTION
+from vmesh.report.study import Study
+from vmesh.report.tables import decibels, parts_table, sizes_table, times_table
+
+_TITLE: Final = "Photographs and their meshes"
+# Of a photograph in the page: all that two screens of 1200 pixels show, in 17 MB at the very most.
+_MOST_PIXELS: Final = 1 << 22
+
+
+def page_of(sections: Iterable[str]) -> bytes:
+    """The page of some sections, UTF-8."""
+    page = fill_page("report", title=_TITLE, rivals=DESCRIPTION, sections="\n".join(sections))
+    return page.encode(errors="replace")  # names of files need not be text
+
+
+def section_of(study: Study, number: int) -> str:
+    """What a page says of one photograph, as its section of that number.
+
+    Names and metadata are text in it and nothing else.
+    """
+    mesh, shown = study.mesh, _reduced(study.original)
+    tables = sizes_table(study.curves), parts_table(study.figures), times_table(study.seconds)
+    return Template((VIEWER / "report-section.html").read_text("utf-8")).substitute(
+        name=escape(study.name),
+        summary=escape(_summary(study)),
+        width=mesh.width,
+        height=mesh.height,
+        columns=shown.shape[1],
+        rows=shown.shape[0],
+        original=_base64(_png(shown)),
+        data=_base64(study.data),
+        plot=plot_curves(study.curves, salt=str(number)),
+        tables="\n".join(tables),
+        absences=escape(_absences(study)),
+    )
+
+
+def _summary(study: Study) -> str:
+    """What the picture is, and what its mesh."""
+    mesh, size, closeness = study.mesh, len(study.data), study.closeness
+    about = Description.of(mesh.metadata)
+    said = ", ".join(filter(None, (about.title, about.author, about.rights)))
+    bits = 8 * size / (mesh.width * mesh.height)
+    return (
+        f"{said + '. ' if said else ''}{mesh.width} × {mesh.height} pixels; "
+        f"{mesh.n_vertices:,} vertices, {mesh.n_triangles:,} triangles; "
+        f"{size:,} bytes, {bits:.3f} bits per pixel; "
+        f"PSNR {decibels(closeness['psnr_rgb'])} dB over RGB, SSIM {closeness['ssim']:.4f}."
+    )
+
+
+def _absences(study: Study) -> str:
+    """Which codecs have no curve, and why."""
+    return " ".join(
+        f"{curve.codec} is left out: it {curve.absence}."
+        for curve in study.curves
+        if not curve.points
+    )
+
+
+def _reduced(pixels: UInt8Array) -> UInt8Array:
+    """A picture of shape (h, w, 3) with as many pixels as a page has room for."""
+    height, width = pixels.shape[:2]
+    factor = math.sqrt(_MOST_PIXELS / (width * height))
+    if factor >= 1:
+        return pixels
+    return resize(pixels, (max(1, int(width * factor)), max(1, int(height * factor))))
+
+
+def _png(pixels: UInt8Array) -> bytes:
+    stream = io.BytesIO()
+    write_raster(pixels, stream, "PNG")
+    return stream.getvalue()
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode()

@@ -1,0 +1,111 @@
+"""The codecs of Pillow at given sizes: the largest file of each that is no larger than asked."""
+
+from __future__ import annotations
+
+import io
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from PIL import Image
+
+from vmesh.arrays import UInt8Array
+from vmesh.formats.raster import LONGEST_SIDES
+from vmesh.limits import MAX_SIDE
+from vmesh.metrics import psnr
+
+
+class Point(NamedTuple):
+    """Bytes of a file, and the PSNR of its picture over RGB in dB."""
+
+    n_bytes: int
+    psnr: float
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """What a codec makes of a picture at several sizes.
+
+    Parameters
+    ----------
+    codec : str
+    points : tuple of Point
+        From small to large.
+    absence : str
+        Why there are none.
+    """
+
+    codec: str
+    points: tuple[Point, ...]
+    absence: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Rival:
+    """A codec whose files grow with their quality, and what Pillow is told besides."""
+
+    name: str
+    qualities: range
+    options: dict[str, Any]
+
+    def curve_of(self, pixels: UInt8Array, budgets: Sequence[int]) -> Curve:
+        """For each budget in bytes what the largest file within it gives.
+
+        `pixels` has shape (h, w, 3), uint8. A budget that no file is within has no point.
+        """
+        most = LONGEST_SIDES.get(self.name.upper(), MAX_SIDE)
+        if max(pixels.shape) > most:
+            return Curve(self.name, (), f"holds sides of at most {most} pixels")
+        if not self._is_written():
+            return Curve(self.name, (), "cannot be written by this Pillow")
+        files = self._largest_files(_image_of(pixels), budgets)
+        points = sorted({Point(len(data), psnr(pixels, _pixels_of(data))) for data in files})
+        return Curve(self.name, tuple(points), "" if points else "has no file as small as these")
+
+    def _largest_files(self, image: Image.Image, budgets: Sequence[int]) -> set[bytes]:
+        file_of = cache(lambda quality: self._write(image, quality))
+        counts = {
+            bisect_right(self.qualities, budget, key=lambda quality: len(file_of(quality)))
+            for budget in budgets
+        }
+        return {file_of(self.qualities[count - 1]) for count in counts if count > 0}
+
+    def _write(self, image: Image.Image, quality: int) -> bytes:
+        stream = io.BytesIO()
+        image.save(stream, self.name, quality=quality, **self.options)
+        return stream.getvalue()
+
+    def _is_written(self) -> bool:
+        """Whether this Pillow writes and reads it: it is built with or without, or with a part."""
+        try:
+            _pixels_of(self._write(Image.new("RGB", (8, 8)), self.qualities[0]))
+        except (KeyError, OSError, ValueError, RuntimeError):
+            return False
+        return True
+
+
+# AVIF is cut in more tiles, which cost bytes, the more threads there are.
+RIVALS: Final = (
+    Rival("JPEG", range(1, 96), {"optimize": True, "progressive": True}),
+    Rival("WebP", range(101), {"method": 6}),
+    Rival("AVIF", range(101), {"speed": 6, "max_threads": 1, "advanced": {"tune": "psnr"}}),
+)
+DESCRIPTION: Final = (
+    "JPEG optimised and progressive, WebP with method 6, AVIF with speed 6 and tuned for PSNR, "
+    "all as Pillow writes them, with chroma of half the resolution"
+)
+
+
+def _image_of(pixels: UInt8Array) -> Image.Image:
+    """An image of one component where all three are equal, for those who can tell."""
+    image = Image.fromarray(pixels)
+    is_grey = bool((pixels == pixels[:, :, :1]).all())
+    return image.convert("L") if is_grey else image
+
+
+def _pixels_of(data: bytes) -> UInt8Array:
+    with Image.open(io.BytesIO(data)) as image:
+        return np.asarray(image.convert("RGB"))
