@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from PIL import Image, features
 
 from vmesh.arrays import UInt8Array
 from vmesh.metrics import psnr
+from vmesh.report.search import largest_within
 
 JPEG: Final = "JPEG"
 MOZJPEG: Final = "JPEG, mozjpeg"
@@ -176,20 +176,9 @@ def _find_level(levels: range) -> Callable[[_Files, int], _File | None]:
     """A search for encoders whose files grow with a level, by about the same factor each."""
 
     def find(files: _Files, budget: int) -> _File | None:
-        fits = [level for level, file in files.known.items() if _size(file) <= budget]
-        low = max(fits, default=levels.start - 1)
-        high = min((level for level in files.known if level > low), default=levels.stop)
-        while high - low > 1:
-            level = (low + high) // 2
-            if low in files.known and high in files.known:
-                least, most = (_size(files.known[end]) for end in (low, high))
-                share = math.log(budget / least) / math.log(most / least)
-                level = min(max(low + round(share * (high - low)), low + 1), high - 1)
-            if _size(files.at(level)) <= budget:
-                low = level
-            else:
-                high = level
-        return files.at(low) if low in levels else None
+        known = {level: _size(file) for level, file in files.known.items()}
+        level = largest_within(budget, levels, lambda level: _size(files.at(level)), known)
+        return None if level is None else files.at(level)
 
     return find
 

@@ -9,6 +9,7 @@ from vmesh.encoder.settings import Settings
 from vmesh.formats.picture import Picture
 from vmesh.limits import DEFAULT_LIMITS
 from vmesh.mesh import Metadata
+from vmesh.progress import silent
 from vmesh.report.study import Study, study
 
 
@@ -24,5 +25,5 @@ def study_of(
         Picture(pixels, metadata or Metadata()),
         Settings(**({"effort": 1} | settings)),
         limits=DEFAULT_LIMITS,
-        progress=lambda stage: None,
+        progress=silent,
     )

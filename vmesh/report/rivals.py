@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import io
-from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -16,6 +14,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.formats.raster import LONGEST_SIDES
 from vmesh.limits import MAX_SIDE
 from vmesh.metrics import psnr
+from vmesh.report.search import largest_within
 
 
 class Point(NamedTuple):
@@ -66,12 +65,19 @@ class Rival:
         return Curve(self.name, tuple(points), "" if points else "has no file as small as these")
 
     def _largest_files(self, image: Image.Image, budgets: Sequence[int]) -> set[bytes]:
-        file_of = cache(lambda quality: self._write(image, quality))
-        counts = {
-            bisect_right(self.qualities, budget, key=lambda quality: len(file_of(quality)))
-            for budget in budgets
-        }
-        return {file_of(self.qualities[count - 1]) for count in counts if count > 0}
+        files: dict[int, bytes] = {}
+
+        def size_of(quality: int) -> int:
+            files[quality] = self._write(image, quality)
+            return len(files[quality])
+
+        found = set()
+        for budget in budgets:
+            known = {quality: len(data) for quality, data in files.items()}
+            quality = largest_within(budget, self.qualities, size_of, known)
+            if quality is not None:
+                found.add(files[quality])
+        return found
 
     def _write(self, image: Image.Image, quality: int) -> bytes:
         stream = io.BytesIO()

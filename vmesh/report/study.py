@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
@@ -19,6 +19,7 @@ from vmesh.formats.raster import render
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import compare, psnr
+from vmesh.progress import Progress
 from vmesh.report.rivals import RIVALS, Curve, Point
 
 _CODEC: Final = "vmesh"
@@ -66,7 +67,7 @@ def study(
     settings: Settings,
     *,
     limits: Limits,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Study:
     """Encode a photograph at the size asked for and at others, and by other codecs.
 
@@ -124,7 +125,7 @@ def _curve_of(
     original: UInt8Array,
     mesh: Mesh,
     settings: Settings,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Curve:
     """Meshes of a picture by the size of their files; sizes that cannot be met are left out."""
     n_bytes = len(_bare(mesh))
