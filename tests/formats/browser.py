@@ -20,8 +20,15 @@ pytest.importorskip(
 
 from playwright import sync_api as playwright
 
-__all__ = ["pixels_of", "playwright", "running", "settle", "wait_until"]
+__all__ = ["NO_WEBGL", "pixels_of", "playwright", "running", "settle", "wait_until"]
 
+# A script that a page runs first.
+NO_WEBGL = """
+const getContext = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, options) {
+  return kind === "webgl2" ? null : getContext.call(this, kind, options);
+};
+"""
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 _ARGUMENTS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import vmesh
-from tests.formats.browser import pixels_of, playwright, running, settle, wait_until
+from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, settle, wait_until
 from tests.pictures import PICTURES, psnr
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html import element_script, page_of
@@ -19,12 +19,6 @@ from vmesh.formats.picture import flatten
 
 BAR = 40  # rows below the stage
 CONFORMING = Path(__file__).parents[2] / "spec" / "conformance" / "valid"
-NO_WEBGL = """
-const getContext = HTMLCanvasElement.prototype.getContext;
-HTMLCanvasElement.prototype.getContext = function (kind, options) {
-  return kind === "webgl2" ? null : getContext.call(this, kind, options);
-};
-"""
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import vmesh
-from tests.formats.browser import pixels_of, playwright, running, settle, wait_until
+from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, settle, wait_until
 from tests.pictures import PICTURES, psnr
 from tests.report.studies import study_of
 from vmesh.arrays import UInt8Array
@@ -93,6 +93,15 @@ def test_the_ends_of_the_divider_show_the_mesh_and_the_photograph(
     assert psnr(pixels_of(stage), np.asarray(vmesh.render(found.mesh))) > 45
     divide(page, "End")
     assert np.array_equal(pixels_of(stage), found.original)
+
+
+def test_without_webgl_the_mesh_is_the_exact_raster(
+    page: playwright.Page, file: str, found: Study
+) -> None:
+    page.add_init_script(NO_WEBGL)
+    stage = show(page, file)
+    divide(page, "Home")
+    assert np.array_equal(pixels_of(stage), vmesh.render(found.mesh))
 
 
 def test_the_divider_starts_in_the_middle_and_moves_by_keys(

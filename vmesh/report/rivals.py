@@ -7,14 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
-import numpy as np
 from PIL import Image
 
 from vmesh.arrays import UInt8Array
+from vmesh.errors import ImageError
+from vmesh.formats.picture import flatten, read_picture
 from vmesh.formats.raster import LONGEST_SIDES
-from vmesh.limits import MAX_SIDE
+from vmesh.limits import MAX_SIDE, Limits
 from vmesh.metrics import psnr
 from vmesh.report.search import largest_within
+
+_NO_LIMIT: Final = Limits(max_pixels=MAX_SIDE**2)  # for files that are made here
 
 
 class Point(NamedTuple):
@@ -88,7 +91,7 @@ class Rival:
         """Whether this Pillow writes and reads it: it is built with or without, or with a part."""
         try:
             _pixels_of(self._write(Image.new("RGB", (8, 8)), self.qualities[0]))
-        except (KeyError, OSError, ValueError, RuntimeError):
+        except (KeyError, OSError, ValueError, RuntimeError, ImageError):
             return False
         return True
 
@@ -113,5 +116,4 @@ def _image_of(pixels: UInt8Array) -> Image.Image:
 
 
 def _pixels_of(data: bytes) -> UInt8Array:
-    with Image.open(io.BytesIO(data)) as image:
-        return np.asarray(image.convert("RGB"))
+    return flatten(read_picture(io.BytesIO(data), limits=_NO_LIMIT).array)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any, Final
 
 from vmesh.arrays import SampleArray, UInt8Array
@@ -17,13 +17,12 @@ from vmesh.encoder.settings import Settings
 from vmesh.formats.picture import Picture, flatten
 from vmesh.formats.raster import render
 from vmesh.limits import Limits
-from vmesh.mesh import Mesh, Metadata
-from vmesh.metrics import compare, psnr
+from vmesh.mesh import Mesh
+from vmesh.metrics import compare
 from vmesh.progress import Progress
-from vmesh.report.rivals import RIVALS, Curve, Point
+from vmesh.report.mesh_curve import SHARES, mesh_curve, without_goal
+from vmesh.report.rivals import RIVALS, Curve
 
-_CODEC: Final = "vmesh"
-_SHARES: Final = (0.25, 0.5, 1.0, 2.0)  # of the file that was asked for: points of its curve
 _SAMPLE_SIDE: Final = 32
 
 
@@ -89,70 +88,35 @@ def study(
     with _timed(seconds, "render"):
         rendered = render(mesh, limits=limits)
     closeness = compare(original, flatten(rendered, mesh.depth))
-
-    own = _curve_of(array, original, mesh, settings, progress)
-    budgets = [point.n_bytes for point in own.points]
-    curves = [own]
-    for rival in RIVALS:
-        progress(rival.name)
-        curves.append(rival.curve_of(original, budgets))
+    own = mesh_curve(array, original, mesh, settings, limits, progress)
+    curves = (own, *_rivals_of(own, original, progress))
     figures = describe(data, by_parts=True, limits=limits)
-    return Study(name, original, mesh, data, figures, closeness, seconds, tuple(curves))
+    return Study(name, original, mesh, data, figures, closeness, seconds, curves)
 
 
 def count_study_steps(settings: Settings) -> int:
     """About how often a study with these settings reports progress."""
-    return len(_SHARES) * count_steps(settings) + len(RIVALS)
+    return len(SHARES) * count_steps(settings) + len(RIVALS)
 
 
 def _compile(array: SampleArray, settings: Settings, limits: Limits) -> None:
     """Run every stage on a corner of the picture: compiling, once, is no part of its timings."""
     corner = array[:_SAMPLE_SIDE, :_SAMPLE_SIDE]
-    mesh = encode(corner, method=settings.method, effort=settings.effort, colors=settings.colors)
+    mesh = encode(corner, **asdict(without_goal(settings)))
     render(loads(dumps(mesh), limits=limits), limits=limits)
 
 
 @contextmanager
 def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
-    """Notes how long the block takes."""
+    """Note how long the block takes."""
     started = time.perf_counter()
     yield
     seconds[stage] = time.perf_counter() - started
 
 
-def _curve_of(
-    array: SampleArray,
-    original: UInt8Array,
-    mesh: Mesh,
-    settings: Settings,
-    progress: Progress,
-) -> Curve:
-    """Meshes of a picture by the size of their files; sizes that cannot be met are left out."""
-    n_bytes = len(_bare(mesh))
-    points = {}
-    for share in _SHARES:
-        other = mesh
-        if share != 1:
-            try:
-                chosen = _resized(settings, share, n_bytes, mesh.n_vertices)
-                other = encode(array, progress=progress, **asdict(chosen))
-            except ValueError:
-                continue
-        size = len(_bare(other))
-        points[size] = Point(size, psnr(original, flatten(render(other), other.depth)))
-    return Curve(_CODEC, tuple(points[size] for size in sorted(points)))
-
-
-def _resized(settings: Settings, share: float, n_bytes: int, n_vertices: int) -> Settings:
-    """The settings with a share of the bytes as goal, or of the vertices by the paper's method."""
-    free = replace(
-        settings, quality=None, target_size=None, target_psnr=None, vertices=None, density=None
-    )
-    if settings.method == "adaptive":
-        return replace(free, target_size=round(share * n_bytes))
-    return replace(free, vertices=round(share * n_vertices))
-
-
-def _bare(mesh: Mesh) -> bytes:
-    """The file of a mesh without metadata."""
-    return dumps(mesh.replaced(metadata=Metadata()))
+def _rivals_of(own: Curve, original: UInt8Array, progress: Progress) -> Iterator[Curve]:
+    """What other codecs make of the bytes of a curve's files."""
+    budgets = [point.n_bytes for point in own.points]
+    for rival in RIVALS:
+        progress(rival.name)
+        yield rival.curve_of(original, budgets)

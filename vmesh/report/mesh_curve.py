@@ -1,0 +1,53 @@
+"""How good meshes of a photograph are by the size of their files."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from typing import Final
+
+from vmesh.arrays import SampleArray, UInt8Array
+from vmesh.codec.writer import dumps
+from vmesh.encoder.pipeline import encode
+from vmesh.encoder.settings import Settings
+from vmesh.formats.picture import flatten
+from vmesh.formats.raster import render
+from vmesh.limits import Limits
+from vmesh.mesh import Mesh, Metadata
+from vmesh.metrics import psnr
+from vmesh.progress import Progress
+from vmesh.report.rivals import Curve, Point
+
+SHARES: Final = (0.25, 0.5, 1.0, 2.0)
+"""Vertices of a curve's meshes, by those of the mesh it belongs to."""
+
+_CODEC: Final = "vmesh"
+
+
+def mesh_curve(
+    array: SampleArray,
+    original: UInt8Array,
+    mesh: Mesh,
+    settings: Settings,
+    limits: Limits,
+    progress: Progress,
+) -> Curve:
+    """Meshes of a picture by the size of their files, each size once.
+
+    Vertices are what is asked for: a search for sizes would take many times as long.
+    """
+    points = {}
+    for share in SHARES:
+        wanted = max(4, min(round(share * mesh.n_vertices), mesh.width * mesh.height))
+        chosen = replace(without_goal(settings), vertices=wanted)
+        other = mesh if share == 1 else encode(array, progress=progress, **asdict(chosen))
+        size = len(dumps(other.replaced(metadata=Metadata())))
+        pixels = flatten(render(other, limits=limits), other.depth)
+        points[size] = Point(size, psnr(original, pixels))
+    return Curve(_CODEC, tuple(points[size] for size in sorted(points)))
+
+
+def without_goal(settings: Settings) -> Settings:
+    """The settings but for what the mesh has to meet."""
+    return replace(
+        settings, quality=None, target_size=None, target_psnr=None, vertices=None, density=None
+    )
