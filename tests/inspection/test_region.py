@@ -35,6 +35,7 @@ def test_a_region_that_reaches_beyond_the_picture_is_told() -> None:
 
 def test_small_regions_are_enlarged_by_whole_numbers_and_large_ones_reduced() -> None:
     assert Region(0, 0, 40, 30).good_scale(600) == 10
+    assert Region(0, 0, 300, 200).good_scale(600) == 2
     assert Region(0, 0, 451, 300).good_scale(451) == 1
     assert Region(0, 0, 300, 4000).good_scale(4000) == 0.25
     # 30,000 pixels a side may be drawn at twice their size, not at 400 times.

@@ -152,7 +152,7 @@ def test_captions_tell_the_figures(found: Inspection) -> None:
     assert texts[:2] == [
         "x",
         f"220 x 160 pixels, {mesh.n_vertices:,} vertices, {mesh.n_triangles:,} triangles, "
-        f"{len(vmesh.dumps(mesh)):,} bytes, {8 * len(vmesh.dumps(mesh)) / 220 / 160:.3g} bits per "
+        f"{len(vmesh.dumps(mesh)):,} bytes, {8 * len(vmesh.dumps(mesh)) / 220 / 160:.3f} bits per "
         f"pixel, PSNR {error:.2f} dB",
     ]
     names = ["Original", "Salience", "Points", "Mesh", "Render", "Error"]

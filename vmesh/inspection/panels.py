@@ -40,7 +40,7 @@ def stage_panels(inspection: Inspection) -> tuple[Panel, ...]:
     details = {
         "original": f"{kind} of {mesh.depth} bits",
         "salience": "dark where vertices are wanted",
-        "points": f"{mesh.n_vertices:,}, {mesh.n_vertices / n_pixels:.3g} for each pixel",
+        "points": f"{mesh.n_vertices:,} ({mesh.n_vertices / n_pixels:.2%} of the pixels)",
         "mesh": f"{mesh.n_triangles:,} triangles",
         "render": f"{_decibels(inspection)} in {inspection.n_bytes:,} bytes",
         "error": _mean_error(inspection.errors),
@@ -50,16 +50,18 @@ def stage_panels(inspection: Inspection) -> tuple[Panel, ...]:
     )
 
 
-def enlargement_panels(inspection: Inspection, region: Region) -> tuple[Panel, ...]:
+def enlargement_panels(
+    inspection: Inspection, region: Region, *, is_enlarged: bool
+) -> tuple[Panel, ...]:
     """The panels of a region."""
     part = np.s_[region.top : region.top + region.height, region.left : region.left + region.width]
     place = f"{region.width} x {region.height} pixels at {region.left}, {region.top}"
     return (
         Panel("Region", place, _draw_place),
-        Panel("Original", "a pixel is a square", draw_original),
+        Panel("Original", "a pixel is a square" if is_enlarged else "", draw_original),
         Panel("Bicubic", "the original, interpolated", draw_bicubic),
         Panel("Mesh", "drawn at this scale", draw_render),
-        Panel("Triangles", "over the original, paler", draw_triangles),
+        Panel("Triangles", "over the original, paler" if is_enlarged else "", draw_triangles),
         Panel("Error", _mean_error(inspection.errors[part]), draw_error),
     )
 
@@ -86,7 +88,7 @@ def figures_of(inspection: Inspection) -> str:
     bits = 8 * n_bytes / (mesh.width * mesh.height)
     return (
         f"{mesh.width} x {mesh.height} pixels, {mesh.n_vertices:,} vertices, "
-        f"{mesh.n_triangles:,} triangles, {n_bytes:,} bytes, {bits:.3g} bits per pixel, "
+        f"{mesh.n_triangles:,} triangles, {n_bytes:,} bytes, {bits:.3f} bits per pixel, "
         f"{_decibels(inspection)}"
     )
 

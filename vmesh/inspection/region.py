@@ -65,4 +65,4 @@ class Region:
         if own >= _SMALLEST:
             return min(1.0, _LARGEST / own)
         # Beyond that coordinates of the whole picture would be too large to draw with.
-        return float(max(1, min(_SMALLEST // own, MAX_SIDE // longest_side)))
+        return float(max(1, min(-(-_SMALLEST // own), MAX_SIDE // longest_side)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from vmesh.formats.sheet import Sheet, printable
 from vmesh.inspection.layout import Layout
 from vmesh.inspection.panels import enlargement_panels, figures_of, stage_panels
@@ -54,8 +56,10 @@ def stages_sheet(
     shown = _region(inspection, region)
     factor = scale or shown.good_scale(max(inspection.original.shape[:2]))
     view = shown.view(factor)
-    panels = stage_panels(inspection) if region is None else enlargement_panels(inspection, region)
-    if region is not None:
+    if region is None:
+        panels = stage_panels(inspection)
+    else:
+        panels = enlargement_panels(inspection, region, is_enlarged=factor > 1)
         title = f"{title}: {region.width} x {region.height} pixels, {_times(factor)}"
     layout = Layout.of(view, len(panels))
     inspection.limits.check_pixels(layout.width, layout.height)
@@ -74,4 +78,7 @@ def _region(inspection: Inspection, region: Region | None) -> Region:
 
 
 def _times(scale: float) -> str:
-    return f"{scale:.3g} times as large" if scale != 1 else "at their own size"
+    if scale == 1:
+        return "at their own size"
+    number = np.format_float_positional(scale, 3, fractional=False, trim="-")
+    return f"{number} times as large"

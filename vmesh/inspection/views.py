@@ -118,8 +118,7 @@ def _point_colors(inspection: Inspection) -> UInt8Array:
 
 def _weight(view: View) -> float:
     """How much wider strokes are than at the picture's own scale."""
-    scale = view.scale[0]
-    return scale if scale < 1 else min(float(scale**0.5), _MOST_WEIGHT)
+    return min(float(view.scale[0] ** 0.5), _MOST_WEIGHT)
 
 
 def _part(array: Samples, view: View) -> Samples:
