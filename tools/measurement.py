@@ -116,9 +116,10 @@ class Printer:
         return f"|{'|'.join(dashes)}|"
 
 
-def load_photographs(folder: Path) -> list[Photograph]:
-    """All photographs of a folder as RGB, by name."""
+def load_photographs(folder: Path, names: Sequence[str] | None = None) -> list[Photograph]:
+    """All photographs of a folder as RGB, by name; of some names only, if they are given."""
     paths = sorted(path for path in folder.iterdir() if path.suffix.lower() in _SUFFIXES)
+    paths = [path for path in paths if names is None or path.stem in names]
     if not paths:
         raise click.UsageError(f"{folder}: no photographs that end in {', '.join(_SUFFIXES)}")
     return [load_photograph(path) for path in paths]

@@ -305,7 +305,9 @@ def test_info_names_metadata(file: Path, tmp_path: Path) -> None:
     assert parts[3]["bytes"] == 4
 
 
-@pytest.mark.parametrize("show", ["salience", "points", "mesh", "render", "error", "sheet"])
+@pytest.mark.parametrize(
+    "show", ["original", "salience", "points", "mesh", "render", "error", "sheet"]
+)
 def test_inspect_draws_every_stage(tmp_path: Path, show: str) -> None:
     target = tmp_path / "out.png"
     succeed("inspect", CHELSEA, target, "--show", show, "--density", "0.01")
@@ -317,6 +319,38 @@ def test_inspect_draws_every_stage(tmp_path: Path, show: str) -> None:
     else:
         assert pixels.shape == (300, 451, 3)
     assert pixels.std() > 5
+
+
+def test_inspect_enlarges_a_region_in_any_format(tmp_path: Path) -> None:
+    options = ("--zoom", "130,80,80,60", "--scale", "3", "--density", "0.01", "-e", "1")
+    for suffix, start in ((".png", b"\x89PNG"), (".svg", b"<svg"), (".pdf", b"%PDF")):
+        target = tmp_path / f"sheet{suffix}"
+        succeed("inspect", CHELSEA, target, *options)
+        assert target.read_bytes().startswith(start)
+    with Image.open(tmp_path / "sheet.png") as image:
+        assert image.width > 3 * 240
+    succeed("inspect", CHELSEA, tmp_path / "render.png", "--show", "render", *options)
+    with Image.open(tmp_path / "render.png") as image:
+        assert image.size == (240, 180)
+
+
+def test_inspect_reads_and_writes_streams() -> None:
+    data = succeed("inspect", "-", "-", "-e", "1", "--vertices", "50", given=CHELSEA.read_bytes())
+    assert data.startswith(b"\x89PNG")
+
+
+def test_inspect_tells_of_a_region_that_it_cannot_show(tmp_path: Path) -> None:
+    target = tmp_path / "sheet.png"
+    text = fail(1, "inspect", CHELSEA, target, "--zoom", "400,200,100,50")
+    assert text == (
+        "vmesh: the region of 100 x 50 pixels at 400,200 reaches beyond the picture of 451 x 300\n"
+    )
+    assert "four whole numbers" in fail(2, "inspect", CHELSEA, target, "--zoom", "1,2,3")
+    assert "at least one pixel" in fail(2, "inspect", CHELSEA, target, "--zoom", "1,2,3,0")
+    assert ".svgz" in fail(2, "inspect", CHELSEA, tmp_path / "sheet.xyz")
+    text = fail(1, "inspect", CHELSEA, target, "--scale", "500", "-e", "1", "--vertices", "9")
+    assert "limit" in text
+    assert not list(tmp_path.iterdir())
 
 
 def test_compare_measures_pictures_and_meshes_at_the_size_of_the_first(

@@ -248,11 +248,11 @@ def _supersampled(
         shifted = positions - np.array([0, first * factor * SUBPIXEL])
         band = _drawn(shifted, triangles, colors, (columns * factor, (last - first) * factor))
         blocks = band.reshape(last - first, factor, columns, factor, n_components)
-        result[first:last] = _block_means(blocks)
+        result[first:last] = block_means(blocks)
     return result
 
 
-def _block_means(blocks: SampleArray) -> SampleArray:
+def block_means(blocks: SampleArray) -> SampleArray:
     """Means over axes 1 and 3, rounded; colours count in proportion to their alpha."""
     count = blocks.shape[1] * blocks.shape[3]
     if blocks.shape[4] != 4:

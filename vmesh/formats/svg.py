@@ -30,7 +30,7 @@ from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 from vmesh.progress import Progress, silent
 
-_NAMESPACE: Final = "http://www.w3.org/2000/svg"
+NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _MASK: Final = "_alpha"  # names of gradients have no underscore
 _ICC_NOTE: Final = " Colours are numbers in the picture's own profile, which SVG has no place for. "
 
@@ -89,24 +89,49 @@ def write_svg(
     if mode == "flat" or fit is not None:
         _check_work(mesh, limits)
     root = {"viewBox": f"0 0 {mesh.width} {mesh.height}", "version": "1.1", **size}
-    colors = mesh.plain_colors
     rgba = None if fit is None else rgba_of(mesh, fit)
     with (
         etree.xmlfile(stream, encoding="utf-8") as document,
-        document.element("svg", root, nsmap={None: _NAMESPACE}),
+        document.element("svg", root, nsmap={None: NAMESPACE}),
     ):
         _write_description(document, mesh)
-        drawing = Drawing(mesh, stream, document, style, progress or silent)
-        if mesh.n_components == 4:
-            whole = {"width": str(mesh.width), "height": str(mesh.height)}
-            frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}
-            with document.element("mask", {"id": _MASK, **frame}):
-                drawing.write(colors[:, [3, 3, 3]], _channels(rgba, [3, 3, 3]))
-            with document.element("g", {"mask": f"url(#{_MASK})"}):
-                drawing.write(colors[:, :3], _channels(rgba, [0, 1, 2], 3))
-        else:
-            rgb = colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors
-            drawing.write(rgb, _channels(rgba, [0, 1, 2]))
+        draw_mesh(document, stream, mesh, style, rgba, progress or silent)
+
+
+def draw_mesh(
+    document: etree._IncrementalFileWriter,
+    stream: BinaryIO | gzip.GzipFile,
+    mesh: Mesh,
+    style: Style,
+    rgba: UInt8Array | None = None,
+    progress: Progress = silent,
+) -> None:
+    """Write the groups that show a mesh into an open document, which has no other mesh.
+
+    Parameters
+    ----------
+    document : lxml's writer of elements
+    stream : binary file
+        What it writes to.
+    mesh : Mesh
+    style : Style
+    rgba : ndarray, optional
+        The photograph to fit to, shape (h, w, 4), uint8.
+    progress : callable
+        As of :func:`write_svg`.
+    """
+    colors = mesh.plain_colors
+    drawing = Drawing(mesh, stream, document, style, progress)
+    if mesh.n_components == 4:
+        whole = {"width": str(mesh.width), "height": str(mesh.height)}
+        frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}
+        with document.element("mask", {"id": _MASK, **frame}):
+            drawing.write(colors[:, [3, 3, 3]], _channels(rgba, [3, 3, 3]))
+        with document.element("g", {"mask": f"url(#{_MASK})"}):
+            drawing.write(colors[:, :3], _channels(rgba, [0, 1, 2], 3))
+    else:
+        rgb = colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors
+        drawing.write(rgb, _channels(rgba, [0, 1, 2]))
 
 
 def _channels(

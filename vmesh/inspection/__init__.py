@@ -1,0 +1,1 @@
+"""The stages of an encoding, drawn: what ``vmesh inspect`` shows."""

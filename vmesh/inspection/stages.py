@@ -1,0 +1,94 @@
+"""An encoding with all that is seen on the way."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import cached_property
+
+from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
+from vmesh.codec.writer import dumps
+from vmesh.encoder.image import as_image
+from vmesh.encoder.pipeline import encode, propose
+from vmesh.encoder.settings import Settings
+from vmesh.formats.heat import error_levels
+from vmesh.formats.picture import flatten
+from vmesh.formats.raster import render
+from vmesh.limits import DEFAULT_LIMITS, Limits
+from vmesh.mesh import Mesh, Metadata
+from vmesh.metrics import psnr
+from vmesh.progress import Progress
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """An encoding and its stages.
+
+    Parameters
+    ----------
+    photograph : ndarray
+        As :func:`vmesh.encode` takes it.
+    salience : ndarray
+        Shape (c, h, w), uint16, in 1/256 level.
+    classes : ndarray, optional
+        Shape (h, w), uint8: bit i is set where the mesh has a sample of colour plane i. None where
+        vertices have moved since they were sampled.
+    mesh : Mesh
+    limits : Limits
+        On what is drawn of it.
+    """
+
+    photograph: SampleArray
+    salience: UInt16Array
+    classes: UInt8Array | None
+    mesh: Mesh
+    limits: Limits = DEFAULT_LIMITS
+
+    @cached_property
+    def original(self) -> UInt8Array:
+        """The photograph on white, shape (h, w, 3)."""
+        return flatten(self.photograph)
+
+    @cached_property
+    def rendered(self) -> UInt8Array:
+        """The mesh on white at its own size, shape (h, w, 3)."""
+        return flatten(render(self.mesh, limits=self.limits), self.mesh.depth)
+
+    @cached_property
+    def errors(self) -> Float64Array:
+        """Root of the mean square of the difference of both, shape (h, w), in levels."""
+        return error_levels(self.original, self.rendered)
+
+    @cached_property
+    def psnr(self) -> float:
+        """Of the mesh, over RGB, in dB."""
+        return psnr(self.original, self.rendered)
+
+    @cached_property
+    def n_bytes(self) -> int:
+        """Size of the ``.vmesh`` file, metadata included."""
+        return len(dumps(self.mesh))
+
+
+def inspect_encoding(
+    photograph: SampleArray,
+    settings: Settings,
+    *,
+    metadata: Metadata | None = None,
+    limits: Limits = DEFAULT_LIMITS,
+    progress: Progress | None = None,
+) -> Inspection:
+    """Encode a photograph, and keep what is seen on the way.
+
+    Parameters
+    ----------
+    photograph, metadata, progress
+        As for :func:`vmesh.encode`.
+    settings : Settings
+    limits : Limits
+        On the mesh and on what is drawn of it.
+    """
+    salience, samples = propose(as_image(photograph), settings)
+    mesh = encode(photograph, metadata=metadata, progress=progress, **asdict(settings))
+    limits.check_vertices(mesh.n_vertices)
+    classes = samples.classes if settings.method == "blue-noise" else None
+    return Inspection(photograph, salience, classes, mesh, limits)
