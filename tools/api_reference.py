@@ -27,6 +27,7 @@ CHAPTERS: Final = {
     "Pixels, meshes, files": ("encode", "Settings", "render", "load", "loads", "dump", "dumps"),
     "The mesh": ("Mesh", "Metadata", "ColorLattice"),
     "Other formats and programs": ("export", "import_mesh", "paint_mesh", "register"),
+    "Reports": ("study", "Study"),
     "Limits and errors": (
         *("Limits", "VmeshError", "FormatError", "LimitError", "ImageError", "MeshError"),
         "PartialFileWarning",

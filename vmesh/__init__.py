@@ -9,6 +9,7 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG, PLY ... by the file's name
     mesh = vmesh.import_mesh("mesh.ply")   PLY, OBJ, glTF or text -> Mesh
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
+    vmesh.study(array)                     a report on the photograph, shown by notebooks
     vmesh.register()                       Image.open and Image.save of Pillow know .vmesh
 """
 
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
     from vmesh.pillow_plugin import register
+    from vmesh.report.study import Study, study
 
 __version__ = "0.1.0"
 
@@ -53,6 +55,7 @@ __all__ = [
     "Metadata",
     "PartialFileWarning",
     "Settings",
+    "Study",
     "VmeshError",
     "dump",
     "dumps",
@@ -64,6 +67,7 @@ __all__ = [
     "paint_mesh",
     "register",
     "render",
+    "study",
 ]
 
 _HOMES: Final = {
@@ -77,6 +81,7 @@ _HOMES: Final = {
     "Metadata": "vmesh.mesh",
     "PartialFileWarning": "vmesh.errors",
     "Settings": "vmesh.encoder.settings",
+    "Study": "vmesh.report.study",
     "VmeshError": "vmesh.errors",
     "dump": "vmesh.codec.stream",
     "dumps": "vmesh.codec.writer",
@@ -88,6 +93,7 @@ _HOMES: Final = {
     "paint_mesh": "vmesh.formats.cairo_pdf",
     "register": "vmesh.pillow_plugin",
     "render": "vmesh.formats.raster",
+    "study": "vmesh.report.study",
 }
 
 

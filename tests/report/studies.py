@@ -5,11 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vmesh.arrays import SampleArray
-from vmesh.encoder.settings import Settings
-from vmesh.formats.picture import Picture
-from vmesh.limits import DEFAULT_LIMITS
 from vmesh.mesh import Metadata
-from vmesh.progress import silent
 from vmesh.report.study import Study, study
 
 
@@ -20,10 +16,4 @@ def study_of(
     **settings: Any,
 ) -> Study:
     """What a report says of a picture, at effort 1 unless another is given."""
-    return study(
-        name,
-        Picture(pixels, metadata or Metadata()),
-        Settings(**({"effort": 1} | settings)),
-        limits=DEFAULT_LIMITS,
-        progress=silent,
-    )
+    return study(pixels, name=name, metadata=metadata, **({"effort": 1} | settings))

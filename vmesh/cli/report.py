@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,4 +69,12 @@ def make_section(
     report("reading")
     picture = read_photograph(source, limits)
     name = "standard input" if source == STANDARD else Path(source).name
-    return section_of(study(name, picture, settings, limits=limits, progress=report), number)
+    found = study(
+        picture.array,
+        name=name,
+        metadata=picture.metadata,
+        limits=limits,
+        progress=report,
+        **asdict(settings),
+    )
+    return section_of(found, number)

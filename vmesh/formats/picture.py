@@ -158,12 +158,14 @@ def _exif_of(image: Image.Image) -> bytes:
 def flatten(array: SampleArray, depth: int | None = None) -> UInt8Array:
     """A picture as RGB of 8 bits on white, shape (h, w, 3), uint8.
 
-    `array` has shape (h, w), (h, w, 3) or (h, w, 4), and samples of `depth` bits: as many as its
-    type holds, unless given.
+    `array` has shape (h, w) or (h, w, c) with c of 1, 3 or 4, and samples of `depth` bits: as many
+    as its type holds, unless given.
     """
     array = rescale(array, depth or 8 * array.dtype.itemsize, 8)
     if array.ndim == 2:
-        return np.repeat(array[:, :, None], 3, axis=2)
+        array = array[:, :, None]
+    if array.shape[2] == 1:
+        return np.repeat(array, 3, axis=2)
     if array.shape[2] == 3:
         return array
     alpha = array[:, :, 3:].astype(np.int64)

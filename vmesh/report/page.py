@@ -15,12 +15,13 @@ from vmesh.formats.description import Description
 from vmesh.formats.html import VIEWER, fill_page
 from vmesh.formats.picture import resize
 from vmesh.formats.raster import write_raster
-from vmesh.report.plot import plot_curves
+from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
 from vmesh.report.study import Study
 from vmesh.report.tables import decibels, parts_table, sizes_table, times_table
 
 _TITLE: Final = "Photographs and their meshes"
+_FRAME: Final = "border: 0; width: 100%; height: 60rem"
 # Of a photograph in the page: all that two screens of 1200 pixels show, in 17 MB at the very most.
 _MOST_PIXELS: Final = 1 << 22
 
@@ -29,6 +30,19 @@ def page_of(sections: Iterable[str]) -> bytes:
     """The page of some sections, UTF-8."""
     page = fill_page("report", title=_TITLE, rivals=DESCRIPTION, sections="\n".join(sections))
     return page.encode(errors="replace")  # names of files need not be text
+
+
+def frame_of(study: Study) -> str:
+    """The page on one photograph in a frame, which keeps its styles and names to itself.
+
+    Raises
+    ------
+    VmeshError
+        If matplotlib is not installed.
+    """
+    check_matplotlib()
+    page = page_of([section_of(study, 0)]).decode()
+    return f'<iframe srcdoc="{escape(page)}" style="{_FRAME}"></iframe>'
 
 
 def section_of(study: Study, number: int) -> str:

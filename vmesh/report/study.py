@@ -5,21 +5,25 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
+from importlib import import_module
 from typing import Any, Final
+
+import numpy.typing as npt
 
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.codec.contents import describe
 from vmesh.codec.reader import loads
 from vmesh.codec.writer import dumps
+from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import count_steps, encode
 from vmesh.encoder.settings import Settings
-from vmesh.formats.picture import Picture, flatten
+from vmesh.formats.picture import flatten
 from vmesh.formats.raster import render
-from vmesh.limits import Limits
-from vmesh.mesh import Mesh
+from vmesh.limits import DEFAULT_LIMITS, Limits
+from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import compare
-from vmesh.progress import Progress
+from vmesh.progress import Progress, silent
 from vmesh.report.mesh_curve import SHARES, mesh_curve, without_goal
 from vmesh.report.rivals import RIVALS, Curve
 
@@ -51,35 +55,65 @@ class Study:
     """
 
     name: str
-    original: UInt8Array
+    original: UInt8Array = field(repr=False)
     mesh: Mesh
-    data: bytes
-    figures: dict[str, Any]
+    data: bytes = field(repr=False)
+    figures: dict[str, Any] = field(repr=False)
     closeness: dict[str, float]
     seconds: dict[str, float]
     curves: tuple[Curve, ...]
 
+    def _repr_html_(self) -> str:
+        """The page on the photograph, for notebooks."""
+        # By its name, since it is made of studies.
+        frame: str = import_module("vmesh.report.page").frame_of(self)
+        return frame
+
 
 def study(
-    name: str,
-    picture: Picture,
-    settings: Settings,
+    photograph: npt.ArrayLike,
     *,
-    limits: Limits,
-    progress: Progress,
+    name: str = "photograph",
+    metadata: Metadata | None = None,
+    limits: Limits = DEFAULT_LIMITS,
+    progress: Progress | None = None,
+    **settings: Any,
 ) -> Study:
     """Encode a photograph at the size asked for and at others, and by other codecs.
 
+    A notebook shows the result as the page of ``vmesh report``, for which matplotlib is needed.
+
+    Parameters
+    ----------
+    photograph : array_like
+        As :func:`vmesh.encode` takes it.
+    name : str
+        What stands above its figures.
+    metadata : Metadata, optional
+        What travels with the picture.
+    limits : Limits
+        What the mesh may ask for.
+    progress : callable, optional
+        Called with the name of each stage as it begins, and again as it goes on.
+    **settings
+        Fields of :class:`vmesh.Settings`.
+
+    Returns
+    -------
+    Study
+
     Raises
     ------
-    ValueError, LimitError
-        If the size or PSNR asked for cannot be met, or the mesh is more than `limits` allow.
+    ValueError, TypeError, LimitError
+        If the array or a setting is not as described, the size or PSNR asked for cannot be met, or
+        the mesh is more than `limits` allow.
     """
-    array, original = picture.array, flatten(picture.array)
-    _compile(array, settings, limits)
+    array, chosen, report = as_image(photograph), Settings(**settings), progress or silent
+    original = flatten(array)
+    _compile(array, chosen, limits)
     seconds: dict[str, float] = {}
     with _timed(seconds, "encode"):
-        mesh = encode(array, metadata=picture.metadata, progress=progress, **asdict(settings))
+        mesh = encode(array, metadata=metadata, progress=report, **settings)
     limits.check_vertices(mesh.n_vertices)
     with _timed(seconds, "write"):
         data = dumps(mesh)
@@ -88,8 +122,8 @@ def study(
     with _timed(seconds, "render"):
         rendered = render(mesh, limits=limits)
     closeness = compare(original, flatten(rendered, mesh.depth))
-    own = mesh_curve(array, original, mesh, settings, limits, progress)
-    curves = (own, *_rivals_of(own, original, progress))
+    own = mesh_curve(array, original, mesh, chosen, limits, report)
+    curves = (own, *_rivals_of(own, original, report))
     figures = describe(data, by_parts=True, limits=limits)
     return Study(name, original, mesh, data, figures, closeness, seconds, curves)
 
