@@ -42,8 +42,10 @@ def compare(first: UInt8Array, second: UInt8Array) -> dict[str, float]:
 
 def psnr(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
     """Peak signal-to-noise ratio of two arrays of one shape with values of 0 to 255, in dB."""
-    difference = np.asarray(first, dtype=np.float64) - np.asarray(second, dtype=np.float64)
-    error = float(np.mean(difference * difference))
+    ones, others = np.asarray(first), np.asarray(second)
+    # Row by row: differences of all samples at once would take eight times a picture's memory.
+    rows = (np.subtract(a, b, dtype=np.float64) for a, b in zip(ones, others, strict=True))
+    error = sum(float(np.vdot(row, row)) for row in rows) / ones.size
     return float("inf") if error == 0.0 else float(10.0 * np.log10(255.0**2 / error))
 
 
