@@ -8,15 +8,15 @@
  *      c . . . . .  b
  */
 
+import { fillRgba } from "./rgba.js";
+
 /**
  * @param {import("../vmesh.js").Mesh} mesh
- * @param {object} frame columns and rows of the image; left, top, scaleX, scaleY of the picture
- * @param {ImageData} image of the size of the frame, transparent
+ * @param {Float64Array} places x and y of each vertex in the image
+ * @param {ImageData} image transparent
  */
-export function drawEnlarged(mesh, frame, image) {
-  const { triangles } = mesh;
-  const places = placesOf(mesh, frame);
-  const colors = colorsOf(mesh);
+export function drawEnlarged({ vertices, triangles, samples, steps, depth }, places, image) {
+  const colors = fillRgba(new Float64Array(2 * vertices.length), samples, steps.length, depth, 255);
   const corners = [0, 0, 0];
   for (let at = 0; at < triangles.length; at += 3) {
     for (let i = 0; i < 3; i++) corners[i] = triangles[at + i];
@@ -24,8 +24,8 @@ export function drawEnlarged(mesh, frame, image) {
   }
 }
 
-/** Where vertices are in the image: x and y of each. */
-function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY }) {
+/** Where a frame shows the vertices: x and y of each. */
+export function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY }) {
   const unit = 2 ** subdivision;
   const places = new Float64Array(vertices.length);
   for (let i = 0; i < vertices.length; i += 2) {
@@ -33,19 +33,6 @@ function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY }) {
     places[i + 1] = top + (vertices[i + 1] / unit) * scaleY;
   }
   return places;
-}
-
-/** Red, green, blue and alpha of each vertex, 255 for the largest sample. */
-function colorsOf({ samples, steps, depth }) {
-  const n = steps.length;
-  const gain = 255 / (2 ** depth - 1);
-  const colors = new Float64Array((4 * samples.length) / n).fill(255);
-  for (let v = 0; v < samples.length / n; v++) {
-    for (let i = 0; i < Math.max(n, 3); i++) {
-      colors[4 * v + i] = samples[n * v + (n === 1 ? 0 : i)] * gain;
-    }
-  }
-  return colors;
 }
 
 function drawTriangle(corners, places, colors, image) {

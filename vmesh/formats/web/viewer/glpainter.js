@@ -1,6 +1,7 @@
 /** Draws meshes with WebGL 2, whose graphics hardware interpolates the colours of the corners. */
 
 import { endsOf } from "./edges.js";
+import { fillRgba } from "./rgba.js";
 
 const VERTEX_SHADER = `#version 300 es
 uniform vec2 centre; // in lattice units
@@ -160,14 +161,7 @@ function fill(gl, target, buffer, array) {
 }
 
 /** Red, green, blue and alpha of each vertex, 65535 for the largest sample. */
-function colorsOf({ samples, steps, depth }) {
-  const n = steps.length;
-  const gain = 65535 / (2 ** depth - 1);
-  const colors = new Uint16Array((4 * samples.length) / n).fill(65535);
-  for (let v = 0; v < samples.length / n; v++) {
-    for (let i = 0; i < Math.max(n, 3); i++) {
-      colors[4 * v + i] = Math.round(samples[n * v + (n === 1 ? 0 : i)] * gain);
-    }
-  }
-  return colors;
+function colorsOf({ vertices, samples, steps, depth }) {
+  const colors = new Float64Array(2 * vertices.length);
+  return Uint16Array.from(fillRgba(colors, samples, steps.length, depth, 65535), Math.round);
 }
