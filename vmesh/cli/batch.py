@@ -20,10 +20,11 @@ from vmesh.batch.task import Outcome
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import mesh_options, quiet_option, take_settings
-from vmesh.cli.progress import Report, show_files
+from vmesh.cli.progress import show_files
 from vmesh.cli.streams import STANDARD, check_folder
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.registry import FORMATS
+from vmesh.progress import Progress
 
 _SUFFIXES = (FILE_SUFFIX, *FORMATS)
 
@@ -132,7 +133,7 @@ def make_folder(path: str) -> None:
     check_folder(path)
 
 
-def show_outcomes(outcomes: Iterable[Outcome], report: Report, *, as_json: bool) -> list[Outcome]:
+def show_outcomes(outcomes: Iterable[Outcome], report: Progress, *, as_json: bool) -> list[Outcome]:
     """Tell outcomes as they come; returns those that failed."""
     failed = []
     for outcome in outcomes:

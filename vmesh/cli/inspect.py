@@ -3,29 +3,27 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
 from vmesh.formats.registry import SHEET_SUFFIXES
 
+if TYPE_CHECKING:
+    from vmesh.inspection.region import Region
+
 VIEWS = ("original", "salience", "points", "mesh", "render", "error", "sheet")
 
 
-def _as_region(_: click.Context, __: click.Parameter, value: str | None) -> Any:
-    """The region that an option names; a usage error if it names none."""
-    if value is None:
-        return None
+def _region_of(text: str) -> Region:
+    """The region that an option names."""
     from vmesh.inspection.region import Region
 
-    try:
-        return Region.parse(value)
-    except ValueError as error:
-        raise click.BadParameter(str(error)) from None
+    return Region.parse(text)
 
 
 @click.command("inspect")
@@ -41,7 +39,7 @@ def _as_region(_: click.Context, __: click.Parameter, value: str | None) -> Any:
 @click.option(
     "--zoom",
     metavar="X,Y,W,H",
-    callback=_as_region,
+    callback=checked_by(_region_of),
     help="Only this region of the picture; a sheet then shows the mesh beside enlarged pixels.",
 )
 @click.option(
@@ -57,7 +55,8 @@ def command(source: str, target: str, show: str, quiet: bool, **options: Any) ->
 
     OUTPUT is an image, SVG or PDF, in which the mesh, its edges and points are drawn as such.
     """
-    region, scale = options.pop("zoom"), options.pop("scale")
+    zoom, scale = options.pop("zoom"), options.pop("scale")
+    region = None if zoom is None else _region_of(zoom)
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, SHEET_SUFFIXES)
     suffix = ".png" if target == STANDARD else Path(target).suffix.lower()

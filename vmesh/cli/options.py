@@ -22,6 +22,7 @@ from vmesh.encoder.settings import (
 )
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+Callback = Callable[[click.Context, click.Parameter, str | None], str | None]
 
 _MESH_OPTIONS = (
     click.option(
@@ -131,3 +132,17 @@ def take_settings(options: dict[str, Any]) -> Settings:
 
 quiet_option = click.option("--quiet", is_flag=True, help="No progress on a terminal.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")
+
+
+def checked_by(check: Callable[[str], object]) -> Callback:
+    """What click calls with an option's text: a usage error if `check` raises a ValueError."""
+
+    def callback(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
+        if value is not None:
+            try:
+                check(value)
+            except ValueError as error:
+                raise click.BadParameter(str(error)) from None
+        return value
+
+    return callback

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Final
 
-if TYPE_CHECKING:
-    from rich.progress import Progress, ProgressColumn, TaskID
+from vmesh.progress import Progress, silent
 
-Report = Callable[[str], None]
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+    from rich.progress import ProgressColumn, TaskID
 
 # Seconds of work that the time left is told from: a single file may take minutes.
 _MEMORY: Final = 3600.0
 
 
 @contextmanager
-def show_progress(title: str, n_stages: int, *, quiet: bool) -> Iterator[Report]:
+def show_progress(title: str, n_stages: int, *, quiet: bool) -> Iterator[Progress]:
     """Show a bar of stages while the block runs; yields what to call as each stage begins.
 
     Says so when compiled code is not in the cache yet, since the first run then takes longer.
     """
     if not _is_shown(quiet):
-        yield lambda stage: None
+        yield silent
         return
     from vmesh.kernels.jit import on_first_compilation
 
@@ -41,10 +42,10 @@ def show_progress(title: str, n_stages: int, *, quiet: bool) -> Iterator[Report]
 
 
 @contextmanager
-def show_files(title: str, n_files: int, *, quiet: bool) -> Iterator[Report]:
+def show_files(title: str, n_files: int, *, quiet: bool) -> Iterator[Progress]:
     """Show a bar of files while the block runs; yields what to call as each one is done."""
     if not _is_shown(quiet):
-        yield lambda name: None
+        yield silent
         return
     from rich.progress import MofNCompleteColumn
 
@@ -57,20 +58,18 @@ def _is_shown(quiet: bool) -> bool:
 
 
 @contextmanager
-def _bar(
-    title: str, total: int, columns: list[ProgressColumn]
-) -> Iterator[tuple[Progress, TaskID]]:
+def _bar(title: str, total: int, columns: list[ProgressColumn]) -> Iterator[tuple[Bar, TaskID]]:
     """A bar with the time it took and the time left, which goes when the block ends."""
     from rich.console import Console
     from rich.progress import (
         BarColumn,
-        Progress,
         TextColumn,
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.progress import Progress as Bar
 
-    with Progress(
+    with Bar(
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         *columns,

@@ -11,9 +11,10 @@ import click
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
-from vmesh.cli.progress import Report, show_progress
+from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_folder, check_suffix, read_photograph, write_output
 from vmesh.errors import VmeshError, describe
+from vmesh.progress import Progress
 
 if TYPE_CHECKING:
     from vmesh.encoder.settings import Settings
@@ -60,7 +61,7 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
 
 
 def make_section(
-    source: str, number: int, settings: Settings, limits: Limits, report: Report
+    source: str, number: int, settings: Settings, limits: Limits, report: Progress
 ) -> str:
     """The section of the page on one photograph."""
     from vmesh.report.page import section_of

@@ -7,9 +7,9 @@ from typing import Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
-from vmesh.cli.vector import checked_by, convert
+from vmesh.cli.vector import convert
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg_size import parse_length
 from vmesh.formats.svg_style import Style

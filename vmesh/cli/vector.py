@@ -2,33 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
-
-import click
 
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import read_mesh_or_photograph, write_output
 from vmesh.encoder.settings import Settings
 from vmesh.formats.registry import Format, write_mesh
 from vmesh.limits import Limits
-
-Callback = Callable[[click.Context, click.Parameter, str | None], str | None]
-
-
-def checked_by(check: Callable[[str], object]) -> Callback:
-    """What click calls with an option's text: a usage error if `check` raises a ValueError."""
-
-    def callback(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
-        if value is not None:
-            try:
-                check(value)
-            except ValueError as error:
-                raise click.BadParameter(str(error)) from None
-        return value
-
-    return callback
 
 
 def convert(
