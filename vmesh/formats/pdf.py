@@ -15,7 +15,7 @@ import pydyf
 
 from vmesh.formats.description import Description
 from vmesh.formats.page import Page, make_page
-from vmesh.formats.pdf_mesh import MeshPainter, add, compressed
+from vmesh.formats.pdf_mesh import MeshPainter, add, compressed, page_of
 from vmesh.formats.profiles import srgb_profile
 from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -93,12 +93,7 @@ class _Document:
         content = pydyf.Stream(compress=True)
         content.set_matrix(width / mesh.width, 0, 0, -height / mesh.height, 0, height)
         resources = MeshPainter(self._pdf, mesh, self._color_space()).draw(content)
-        page = pydyf.Dictionary({"Type": "/Page", "Parent": self._pdf.pages.reference})
-        page["MediaBox"] = pydyf.Array([0, 0, width, height])
-        if unit > 1:
-            page["UserUnit"] = unit
-        page["Contents"] = add(self._pdf, content)
-        page["Resources"] = resources
+        page = page_of(self._pdf, size, content, resources)
         if mesh.metadata.xmp:
             xmp = {"Type": "/Metadata", "Subtype": "/XML"}
             page["Metadata"] = add(self._pdf, compressed(mesh.metadata.xmp, xmp))

@@ -1,4 +1,4 @@
-"""A mesh in the content of a PDF page or form.
+"""A mesh in the content of a PDF page or form, and the page.
 
 ::
 
@@ -16,6 +16,7 @@ import deflate
 import pydyf
 
 from vmesh.arrays import UInt8Array
+from vmesh.formats.page import Page
 from vmesh.formats.shading import Shading, make_shadings
 from vmesh.mesh import Mesh
 
@@ -88,6 +89,18 @@ class MeshPainter:
             shadings[f"S{i}"] = add(self._pdf, _shading_stream(shading, colors.shape[1], space))
             content.paint_shading(f"S{i}")
         return pydyf.Dictionary({"Shading": shadings})
+
+
+def page_of(pdf: Any, size: Page, content: Any, resources: Any) -> Any:
+    """A page of a document, which is still to be added to it."""
+    unit = size.user_unit
+    page = pydyf.Dictionary({"Type": "/Page", "Parent": pdf.pages.reference})
+    page["MediaBox"] = pydyf.Array([0, 0, size.width / unit, size.height / unit])
+    if unit > 1:
+        page["UserUnit"] = unit
+    page["Contents"] = add(pdf, content)
+    page["Resources"] = resources
+    return page
 
 
 def add(pdf: Any, item: Any) -> bytes:

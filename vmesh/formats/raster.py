@@ -95,11 +95,21 @@ def render(
     whole = drawn[0] * drawn[1] * SUBPIXEL**2
     if not placement.fills or doubled_area != 2 * whole:
         colors = with_alpha(colors, mesh.lattice.max_sample)
-    if supersample == 1:
-        raster = _drawn(positions, triangles, colors, (columns, rows))
-    else:
-        raster = _supersampled(positions, triangles, colors, (columns, rows), supersample)
+    raster = rasterize(positions, triangles, colors, (columns, rows), supersample)
     return raster[:, :, 0] if colors.shape[1] == 1 else raster
+
+
+def rasterize(
+    positions: Int64Array,
+    triangles: Int32Array,
+    colors: SampleArray,
+    size: tuple[int, int],
+    supersample: int,
+) -> SampleArray:
+    """Pixels of triangles, means of supersample x supersample centres each; shape (h, w, c)."""
+    if supersample == 1:
+        return _drawn(positions, triangles, colors, size)
+    return _supersampled(positions, triangles, colors, size, supersample)
 
 
 def _drawn(
@@ -164,6 +174,13 @@ def write_raster(
     image.save(stream, format_name, **options)
 
 
+def png_of(raster: SampleArray) -> bytes:
+    """The PNG file of a raster in 8 bits, without metadata."""
+    stream = io.BytesIO()
+    write_raster(raster, stream, "PNG")
+    return stream.getvalue()
+
+
 def _takes_exif(format_name: str, mode: str, exif: bytes) -> bool:
     """Whether a format can hold an EXIF block, which may be too long or not make sense."""
     try:
@@ -209,11 +226,17 @@ def raster_size(
     return max(1, round(columns)), max(1, round(rows))
 
 
-def scaled_positions(mesh: Mesh, size: tuple[int, int]) -> Int64Array:
-    """Vertices in 1/256 pixel of a raster that shows the whole canvas, shape (n, 2), int64."""
-    canvas = np.array([mesh.width, mesh.height], dtype=np.int64) * mesh.unit
-    numerators = 2 * mesh.vertices.astype(np.int64) * (np.array(size) * SUBPIXEL) + canvas
-    positions: Int64Array = numerators // (2 * canvas)
+def scaled_positions(
+    mesh: Mesh, size: tuple[int, int], part: tuple[int, int, int, int] | None = None
+) -> Int64Array:
+    """Vertices in 1/256 pixel of a raster of the canvas, shape (n, 2), int64.
+
+    `part` is what the raster shows, unless all of it: left, top, width and height in pixels.
+    """
+    shown = np.array(part or (0, 0, mesh.width, mesh.height), dtype=np.int64) * mesh.unit
+    corner, extent = shown[:2], shown[2:]
+    distances = mesh.vertices.astype(np.int64) - corner
+    positions: Int64Array = (2 * distances * (np.array(size) * SUBPIXEL) + extent) // (2 * extent)
     return positions
 
 
@@ -248,11 +271,11 @@ def _supersampled(
         shifted = positions - np.array([0, first * factor * SUBPIXEL])
         band = _drawn(shifted, triangles, colors, (columns * factor, (last - first) * factor))
         blocks = band.reshape(last - first, factor, columns, factor, n_components)
-        result[first:last] = block_means(blocks)
+        result[first:last] = _block_means(blocks)
     return result
 
 
-def block_means(blocks: SampleArray) -> SampleArray:
+def _block_means(blocks: SampleArray) -> SampleArray:
     """Means over axes 1 and 3, rounded; colours count in proportion to their alpha."""
     count = blocks.shape[1] * blocks.shape[3]
     if blocks.shape[4] != 4:

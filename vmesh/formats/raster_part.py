@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from math import ceil
 
-import numpy as np
-
-from vmesh.arrays import Int64Array, SampleArray
-from vmesh.formats.raster import block_means
-from vmesh.kernels.scanline import SUBPIXEL, draw, measure
+from vmesh.arrays import SampleArray
+from vmesh.formats.raster import rasterize, scaled_positions
+from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Mesh
 
@@ -54,20 +52,8 @@ def render_part(
     side = max(mesh.width * columns / part[2], mesh.height * rows / part[3])
     if side > max(MAX_SIDE, columns, rows):
         raise ValueError(f"at this scale the picture has {side:.0f} pixels a side, over {MAX_SIDE}")
-    positions = _positions(mesh, part, (columns, rows))
+    positions = scaled_positions(mesh, (columns, rows), part)
     _, n_rows = measure(positions, mesh.triangles, rows)
     limits.check_work(n_rows, columns * rows)
-    raster = np.zeros((rows, columns, mesh.n_components), dtype=mesh.colors.dtype)
-    draw(positions, mesh.triangles, mesh.colors, raster)
-    if samples > 1:
-        raster = block_means(raster.reshape(size[1], samples, size[0], samples, -1))
+    raster = rasterize(positions, mesh.triangles, mesh.colors, size, samples)
     return raster[:, :, 0] if mesh.n_components == 1 else raster
-
-
-def _positions(mesh: Mesh, part: tuple[int, int, int, int], size: tuple[int, int]) -> Int64Array:
-    """Vertices in 1/256 pixel of a raster of a part of the canvas, rounded; shape (n, 2)."""
-    corner = np.array(part[:2], dtype=np.int64) * mesh.unit
-    extent = np.array(part[2:], dtype=np.int64) * mesh.unit
-    distances = mesh.vertices.astype(np.int64) - corner
-    positions: Int64Array = (2 * distances * (np.array(size) * SUBPIXEL) + extent) // (2 * extent)
-    return positions

@@ -11,17 +11,16 @@ A unit of the page's content is one of the sheet, y down::
 
 from __future__ import annotations
 
-import io
 import struct
 from collections.abc import Callable
 from typing import Any, BinaryIO, Final
 
 import pydyf
-from PIL import Image
 
 from vmesh.arrays import UInt8Array
 from vmesh.formats.page import Page
-from vmesh.formats.pdf_mesh import MeshPainter, add
+from vmesh.formats.pdf_mesh import MeshPainter, add, page_of
+from vmesh.formats.raster import png_of
 from vmesh.formats.sheet import Color, Frame, Label, MeshPart, Pixels, Sheet, Strokes, View
 
 _ROUND: Final = 1  # line caps
@@ -72,16 +71,9 @@ class _SheetPage:
 
     def close(self) -> None:
         """Add the page to the document."""
-        unit = self._size.user_unit
         font = pydyf.Dictionary({"F": add(self._pdf, pydyf.Dictionary(_FONT))})
         resources = pydyf.Dictionary({"XObject": self._objects, "Font": font})
-        page = pydyf.Dictionary({"Type": "/Page", "Parent": self._pdf.pages.reference})
-        page["MediaBox"] = pydyf.Array([0, 0, self._size.width / unit, self._size.height / unit])
-        if unit > 1:
-            page["UserUnit"] = unit
-        page["Contents"] = add(self._pdf, self._content)
-        page["Resources"] = resources
-        self._pdf.add_page(page)
+        self._pdf.add_page(page_of(self._pdf, self._size, self._content, resources))
 
     def _show(self, item: Pixels) -> None:
         height, width = item.array.shape[:2]
@@ -161,9 +153,7 @@ def _image_stream(array: UInt8Array) -> Any:
 
 def _png_data(array: UInt8Array) -> bytes:
     """The compressed rows of a picture's PNG file."""
-    png = io.BytesIO()
-    Image.fromarray(array).save(png, "PNG")
-    data, place, parts = png.getvalue(), 8, []
+    data, place, parts = png_of(array), 8, []
     while place < len(data):
         length, name = struct.unpack_from(">I4s", data, place)
         if name == b"IDAT":

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import base64
 import gzip
-import io
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Any, BinaryIO, Final
 
 import numpy as np
 from lxml import etree
-from PIL import Image
 
 from vmesh.arrays import UInt8Array
+from vmesh.formats.raster import png_of
 from vmesh.formats.sheet import (
     PAPER,
     Color,
@@ -25,7 +24,7 @@ from vmesh.formats.sheet import (
     Strokes,
     View,
 )
-from vmesh.formats.svg import NAMESPACE, draw_mesh
+from vmesh.formats.svg import NAMESPACE, draw_mesh, gzipped
 from vmesh.formats.svg_style import Style
 
 _LINKS: Final = "http://www.w3.org/1999/xlink"
@@ -55,7 +54,7 @@ def write_sheet_svg(sheet: Sheet, stream: BinaryIO | gzip.GzipFile) -> None:
 
 def write_sheet_svgz(sheet: Sheet, stream: BinaryIO) -> None:
     """Write a sheet as a compressed SVG document."""
-    with gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as compressed:
+    with gzipped(stream) as compressed:
         write_sheet_svg(sheet, compressed)
 
 
@@ -82,9 +81,7 @@ class _Writer:
     def _embed(self, x: int, y: int, array: UInt8Array) -> None:
         size = {"width": str(array.shape[1]), "height": str(array.shape[0])}
         element = _element("image", x=str(x), y=str(y), **size, preserveAspectRatio="none")
-        png = io.BytesIO()
-        Image.fromarray(array).save(png, "PNG")
-        text = base64.b64encode(png.getvalue()).decode("ascii")
+        text = base64.b64encode(png_of(array)).decode("ascii")
         element.set(f"{{{_LINKS}}}href", f"data:image/png;base64,{text}")
         self._document.write(element)
 

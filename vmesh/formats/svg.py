@@ -148,9 +148,13 @@ def write_svgz(
     mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS, **options: Any
 ) -> None:
     """Write a mesh as a compressed SVG document; as :func:`write_svg`."""
-    # No name and no time in the gzip header: the same mesh gives the same bytes.
-    with gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0) as compressed:
+    with gzipped(stream) as compressed:
         write_svg(mesh, compressed, limits=limits, **options)
+
+
+def gzipped(stream: BinaryIO) -> gzip.GzipFile:
+    """What compresses into a stream, without name and time: the same drawing, the same bytes."""
+    return gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0)
 
 
 def _check_work(mesh: Mesh, limits: Limits) -> None:

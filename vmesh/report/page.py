@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import io
 import math
 from collections.abc import Iterable
 from html import escape
@@ -14,7 +13,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.formats.description import Description
 from vmesh.formats.html import VIEWER, fill_page
 from vmesh.formats.picture import resize
-from vmesh.formats.raster import write_raster
+from vmesh.formats.raster import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
 from vmesh.report.study import Study
@@ -59,7 +58,7 @@ def section_of(study: Study, number: int) -> str:
         height=mesh.height,
         columns=shown.shape[1],
         rows=shown.shape[0],
-        original=_base64(_png(shown)),
+        original=_base64(png_of(shown)),
         data=_base64(study.data),
         plot=plot_curves(study.curves, salt=str(number)),
         tables="\n".join(tables),
@@ -97,12 +96,6 @@ def _reduced(pixels: UInt8Array) -> UInt8Array:
     if factor >= 1:
         return pixels
     return resize(pixels, (max(1, int(width * factor)), max(1, int(height * factor))))
-
-
-def _png(pixels: UInt8Array) -> bytes:
-    stream = io.BytesIO()
-    write_raster(pixels, stream, "PNG")
-    return stream.getvalue()
 
 
 def _base64(data: bytes) -> str:
