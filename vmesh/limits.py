@@ -13,6 +13,7 @@ PLAIN_DEPTH: Final = 8  # bits of a sample where nothing else is said
 MAX_DEPTH: Final = 16
 # With sides of at most 2**19 lattice units the in-circle test is exact in two 64-bit words.
 MAX_LATTICE_SIDE: Final = 1 << 19
+MAX_TILE_SIDE: Final = 1 << 12  # lattice units
 
 # So many vertices are read from a file of any length: it takes a fifth of a second.
 FREE_VERTICES: Final = 1 << 16

@@ -23,7 +23,13 @@ import numpy.typing as npt
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray, UInt8Array
 from vmesh.color_lattice import ColorLattice, rescale
-from vmesh.limits import MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION, PLAIN_DEPTH
+from vmesh.limits import (
+    MAX_LATTICE_SIDE,
+    MAX_SIDE,
+    MAX_SUBDIVISION,
+    MAX_TILE_SIDE,
+    PLAIN_DEPTH,
+)
 
 _LARGEST_ENTRY: Final = 1e9
 
@@ -86,6 +92,9 @@ class Mesh:
         A pixel is 2**subdivision lattice units wide, 0 to 8.
     metadata : Metadata
         ICC profile, EXIF and XMP.
+    tile : int, optional
+        Side in pixels of the tiles that a file of the mesh is made of, up to 4096 lattice units;
+        no triangle crosses the lines between them. Without it a file holds the mesh as one.
     """
 
     width: int
@@ -96,10 +105,13 @@ class Mesh:
     lattice: ColorLattice
     subdivision: int = 0
     metadata: Metadata = field(default_factory=Metadata)
+    tile: int | None = None
 
     def __post_init__(self) -> None:
         for name in ("width", "height", "subdivision"):
             object.__setattr__(self, name, index(getattr(self, name)))
+        if self.tile is not None:
+            object.__setattr__(self, "tile", index(self.tile))
         for name in ("vertices", "triangles", "levels"):
             object.__setattr__(self, name, _frozen(getattr(self, name), np.int32, name))
         self._check_header()
@@ -206,12 +218,13 @@ class Mesh:
         area rule: vertices are distinct and in use, every triangle is positively
         oriented, and the areas add up to the canvas. With every inner edge shared by exactly two
         triangles and every other edge on the border, that means that each point of the canvas
-        is covered exactly once.
+        is covered exactly once. If there are tiles, no triangle crosses the lines between them.
         """
         if np.unique(raster_keys(self.vertices)).size != self.n_vertices:
             raise ValueError("two vertices share a position")
         self._check_area()
         self._check_edges()
+        self._check_tiles()
 
     def canonical(self) -> Mesh:
         """The same mesh in the order that files use.
@@ -261,6 +274,7 @@ class Mesh:
             subdivision=subdivision,
             vertices=np.rint(points * (1 << subdivision)).astype(np.int32),
             triangles=triangles,
+            tile=None,
         )
         if not (moved.doubled_areas() > 0).all():
             raise ValueError("the map makes triangles too small for the finest vertex lattice")
@@ -315,6 +329,11 @@ class Mesh:
             raise ValueError(
                 f"expected a canvas side of at most {MAX_LATTICE_SIDE} lattice units, got {side}"
             )
+        if self.tile is not None and not 1 <= self.tile <= MAX_TILE_SIDE >> self.subdivision:
+            raise ValueError(
+                f"expected tiles of 1 to {MAX_TILE_SIDE >> self.subdivision} pixels a side, "
+                f"got {self.tile}"
+            )
 
     def _check_arrays(self) -> None:
         expected = (
@@ -361,6 +380,16 @@ class Mesh:
             raise ValueError("an inner edge belongs to only one triangle")
         if not np.bincount(self.triangles.ravel(), minlength=self.n_vertices).all():
             raise ValueError("a vertex belongs to no triangle")
+
+    def _check_tiles(self) -> None:
+        if self.tile is None:
+            return
+        corners = self.vertices[self.triangles]
+        side = self.tile * self.unit
+        # Counted from the line before the lowest corner.
+        reach = corners.max(axis=1) - corners.min(axis=1) // side * side
+        if (reach > side).any():
+            raise ValueError("a triangle crosses the line between two tiles")
 
 
 def _preview() -> ModuleType:
