@@ -28,7 +28,9 @@ class Limits:
     max_pixels : int
         Pixels of a canvas, of a photograph and of a raster that is asked for.
     max_vertices : int
-        Vertices of a mesh.
+        Vertices of a mesh, those that tiles share counted for each.
+    max_tiles : int
+        Tiles of a mesh.
     max_vertices_per_byte : int
         Vertices for each byte of the coded mesh, beyond the first 65,536 vertices: a million that
         agree in everything fit 200 bytes. Photographs take a byte or two for each vertex.
@@ -43,6 +45,7 @@ class Limits:
 
     max_pixels: int = 1 << 28
     max_vertices: int = 1 << 22
+    max_tiles: int = 1 << 11
     max_vertices_per_byte: int = 8
     max_metadata: int = 1 << 24
     max_work: int = 1 << 31
@@ -62,6 +65,11 @@ class Limits:
             raise LimitError(
                 f"the mesh has {n_vertices} vertices, but the limit is {self.max_vertices}"
             )
+
+    def check_tiles(self, n_tiles: int) -> None:
+        """Raise :class:`LimitError` if a mesh of this many tiles is not allowed."""
+        if n_tiles > self.max_tiles:
+            raise LimitError(f"the mesh has {n_tiles} tiles, but the limit is {self.max_tiles}")
 
     def check_density(self, n_vertices: int, n_bytes: int) -> None:
         """Raise :class:`LimitError` if so few bytes may not hold this many vertices."""

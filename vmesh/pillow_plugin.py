@@ -14,6 +14,7 @@ from typing import IO, Any, Final
 from PIL import Image, ImageFile
 
 from vmesh.codec import layout
+from vmesh.codec.listing import read_ancillary
 from vmesh.codec.metadata import read_metadata
 from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
@@ -148,9 +149,9 @@ def _metadata_of(start: bytes, stream: IO[bytes]) -> Metadata:
     """Metadata of a file, of which a start is read; none if it is damaged: `load` says so."""
     try:
         try:
-            ancillary = layout.read_ancillary(start)
+            ancillary = read_ancillary(start)
         except FormatError:  # they may be longer
-            ancillary = layout.read_ancillary(start + stream.read())
+            ancillary = read_ancillary(start + stream.read())
         return read_metadata(ancillary, DEFAULT_LIMITS, layout.refuse)
     except (FormatError, LimitError):
         return Metadata()

@@ -528,7 +528,7 @@ def test_help_names_every_command_and_loads_neither_numba_nor_pillow(file: Path)
 
 def test_the_versions_that_matter_are_told() -> None:
     lines = succeed("--version").decode().splitlines()
-    assert lines[:2] == [f"vmesh {vmesh.__version__}", "format 1.0"]
+    assert lines[:2] == [f"vmesh {vmesh.__version__}", "format 1.1"]
     assert f"numpy {np.__version__}" in lines
     assert [line.split()[0] for line in lines[2:]] == [
         "Python", "numpy", "numba", "scipy", "Pillow",

@@ -14,12 +14,14 @@ from tests.codec.damage import (
     checked,
     chunk_of,
     file_of,
+    header_fields,
     padded,
     split,
     varint,
     with_content,
     with_header,
 )
+from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.payloads import Encoder, encode
 from vmesh.codec.reader import measure
@@ -88,6 +90,11 @@ def askew(width: int) -> Mesh:
     return Mesh.from_colors(width, 1, vertices, np.array(triangles), colors).canonical()
 
 
+def as_askew(piece: Mesh) -> Mesh:
+    """The piece, with a vertex on each site of two rows, with triangles far from Delaunay."""
+    return piece.replaced(triangles=askew(piece.width).triangles)
+
+
 def picture(height: int, width: int, *components: int, method: str = "blue-noise") -> Mesh:
     """What the encoder makes of noise."""
     noise = np.random.default_rng(1).integers(0, 256, (height, width, *components), dtype=np.uint8)
@@ -143,6 +150,16 @@ MESHES: Final[dict[str, Callable[[], Mesh]]] = {
     "flipped, adaptive": lambda: gradient(24, 32),
     "listed": lambda: askew(24),
     "metadata": lambda: mesh_of(4, 4, 3, n_vertices=9, metadata=METADATA),
+    "tiles": lambda: tiled(20, 13, 6, 3, n_vertices=90),
+    "tiles, flipped": lambda: tiled(
+        20, 13, 6, 4, n_vertices=150, subdivision=1, change=lambda piece: flipped(piece, 1)
+    ),
+    "tiles, a single one": lambda: tiled(7, 5, 9, 1, n_vertices=20),
+    "tiles of a pixel": lambda: tiled(5, 4, 1, 3, subdivision=2, n_vertices=60),
+    "tiles of 4096 lattice units": lambda: tiled(33, 20, 16, 1, n_vertices=40, subdivision=8),
+    "tiles, listed, 16 bits": lambda: tiled(
+        48, 1, 24, 3, n_vertices=3000, depth=16, change=as_askew
+    ).replaced(metadata=METADATA),
 }
 
 
@@ -153,11 +170,15 @@ def corners_only(width: int, height: int, colors: list[int], *, depth: int = 8) 
     return Mesh.from_colors(width, height, vertices, delaunay(vertices), grey, depth=depth)
 
 
+TWO_TILES: Final = tiled(2, 1, 1, 1).replaced(
+    levels=np.array([[0], [128], [255], [0], [128], [255]], dtype=np.int32)
+)
 TWO_PIXELS: Final = corners_only(2, 1, [0, 255, 0, 255])
 DUMPED: Final = [
     TWO_PIXELS,
     TWO_PIXELS.replaced(triangles=np.array([(0, 1, 2), (1, 3, 2)], dtype=np.int32)),
     corners_only(1, 1, [0, 0, 0, 0]),
+    TWO_TILES,
 ]
 
 
@@ -276,6 +297,30 @@ def cut(data: bytes, n_bytes: int) -> bytes:
     return with_content(data, b"M", split(data)[1][-1][1][:-n_bytes])
 
 
+TILED: Final = vmesh.dumps(tiled(12, 10, 8, 3, n_vertices=60))
+TILED_HEADER, (GRID, *TILES) = split(TILED)
+
+
+def with_tiles(*chunks: tuple[bytes, bytes]) -> bytes:
+    """The valid file in tiles with other chunks."""
+    return file_of(TILED_HEADER, chunks)
+
+
+def with_tile(content: bytes) -> bytes:
+    """The valid file in tiles with another content of the second of them."""
+    return with_tiles(GRID, TILES[0], (b"T", content), *TILES[2:])
+
+
+def with_two_tiles(left: Mesh, right: Mesh) -> bytes:
+    """A file of two grey squares side by side, whether they fit or not."""
+    side = left.width
+    header, (grid, *_) = split(vmesh.dumps(tiled(2 * side, side, side, 1)))
+    meshes = (split(vmesh.dumps(mesh))[1][-1][1] for mesh in (left, right))
+    counts = (varint(mesh.n_vertices) for mesh in (left, right))
+    tiles = [(b"T", count + content) for count, content in zip(counts, meshes, strict=True)]
+    return file_of(header, [grid, *tiles])
+
+
 IMPLIED: Final = vmesh.dumps(mesh_of(6, 5, 3, n_vertices=15))
 LIST: Final = vmesh.dumps(askew(20))
 FLIPPED: Final = vmesh.dumps(flipped(mesh_of(16, 12, 3, n_vertices=70), 12))
@@ -371,5 +416,53 @@ DAMAGED: Final[dict[str, tuple[str, bytes]]] = {
     "overdraw": ("geometry", overdrawn(40)),
     "an overlap": ("geometry", listed(DUMPED[1], (0, 1, 3), (1, 3, 2))),
     "a fold": ("geometry", listed(fan(3, 2, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
+    "a grid without a side": ("tiles", with_tiles((b"G", b""), *TILES)),
+    "tiles of no pixels": ("tiles", with_tiles((b"G", b"\0"), *TILES)),
+    "tiles of 4097 lattice units": ("tiles", with_tiles((b"G", varint(4097)), *TILES)),
+    "tiles of 4096 pixels, subdivided": (
+        "tiles",
+        with_header(with_tiles((b"G", varint(4096)), *TILES), subdivision=1),
+    ),
+    "a long side": ("tiles", with_tiles((b"G", padded(8)), *TILES)),
+    "a side without end": ("tiles", with_tiles((b"G", b"\x88"), *TILES)),
+    "a byte after the side": ("tiles", with_tiles((b"G", varint(8) + b"\0"), *TILES)),
+    "fewer vertices than corners of tiles": ("tiles", with_header(TILED, n_vertices=8)),
+    "a tile without a grid": ("chunk", with_tiles(*TILES)),
+    "two grids": ("chunk", with_tiles(GRID, GRID, *TILES)),
+    "a grid and a mesh": ("chunk", with_tiles(GRID, MESH)),
+    "a note between tiles": ("chunk", with_tiles(GRID, TILES[0], (b"n", b""), *TILES[1:])),
+    "a tile missing": ("truncated", with_tiles(GRID, *TILES[:-1])),
+    "a tile too many": ("trailing", with_tiles(GRID, *TILES, TILES[0])),
+    "a flipped bit of a tile": ("checksum", TILED[:60] + bytes([TILED[60] ^ 1]) + TILED[61:]),
+    "a tile of nothing": ("tiles", with_tile(b"")),
+    "a long number of vertices in a tile": (
+        "tiles",
+        with_tile(padded(TILES[1][1][0]) + TILES[1][1][1:]),
+    ),
+    "a tile of three vertices": ("tiles", with_tile(b"\3" + TILES[1][1][1:])),
+    "more vertices in a tile than sites": ("tiles", with_tile(varint(46) + TILES[1][1][1:])),
+    "more vertices in a tile than bytes": (
+        "tiles",
+        with_header(
+            with_tiles((b"G", varint(100)), (b"T", varint(9000)), *TILES[1:]),
+            width=101,
+            height=101,
+        ),
+    ),
+    "half of the positions of a tile": ("positions", with_tile(TILES[1][1][:2])),
+    "half of the colours of a tile": ("colors", with_tile(TILES[1][1][:-12])),
+    "more colours in a tile": ("colors", with_tile(TILES[1][1] + bytes(9))),
+    "another number of vertices in all": (
+        "tiles",
+        with_header(TILED, n_vertices=header_fields(TILED)["n_vertices"] + 1),
+    ),
+    "neighbours with other vertices": (
+        "tiles",
+        with_two_tiles(mesh_of(3, 3, 1, n_vertices=16), mesh_of(3, 3, 1)),
+    ),
+    "neighbours of other colours": (
+        "tiles",
+        with_two_tiles(corners_only(1, 1, [0, 9, 0, 9]), corners_only(1, 1, [9, 0, 8, 0])),
+    ),
     "a line": ("geometry", listed(fan(2, 1, 1), (0, 1, 4), (0, 2, 3), (0, 4, 2), (2, 4, 3))),
 }

@@ -63,9 +63,13 @@ def figures_of(file: Any) -> dict[str, Any]:
 
 def expected(data: bytes) -> dict[str, Any]:
     """The same by the reader of the library."""
-    header, chunks = layout.read_file(data)
-    ends = [chunk.content_offset + chunk.length for chunk in chunks]
-    ends = [chunks[0].offset - 4, *ends]
+    header, at = layout.read_header(data)
+    ends, chunks = [at - 4], []
+    while at < len(data):
+        chunk = layout.read_chunk(data, at)
+        chunks.append(chunk)
+        ends.append(chunk.content_end)
+        at = chunk.end
     return {
         "version": (data[5] >> 4, data[5] & 15),
         "width": header.width,

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from vmesh.codec import layout
+from vmesh.codec.layout import Chunk
+from vmesh.codec.listing import first_number, read_grid
 from vmesh.errors import FormatError
 from vmesh.limits import PLAIN_DEPTH
 
@@ -37,21 +39,33 @@ def annotate(data: bytes) -> Iterator[Field]:
 def _sizes(data: bytes) -> Iterator[tuple[int, str]]:
     """Size and meaning of each field."""
     yield from _header_sizes(data)
-    _, at = layout.read_header(data, _ignore)
-    tag = b""
-    while tag != layout.MESH_TAG:
-        tag = layout.take(data, at, 1, "a chunk")
-        kind = "critical" if tag.isupper() else "ancillary"
-        name = layout.CHUNK_NAMES.get(tag, f"unknown, {kind}")
-        yield 1, f"chunk {tag.decode('ascii', 'backslashreplace')}: {name}"
-        length, start = layout.read_varint(data, at + 1, "chunk")
-        yield start - at - 1, f"  {length} bytes"
-        if length:
-            yield length, "  content"
-        yield 4, "  " + _checksum(data, at, start + length)
-        at = start + length + 4
+    header, at = layout.read_header(data, _ignore)
+    n_left, tag = 1, b""  # tiles, or the mesh
+    while n_left:
+        chunk = layout.read_chunk(data, at)
+        tag = chunk.tag
+        kind = "critical" if chunk.is_critical else "ancillary"
+        yield 1, f"{chunk.name}: {layout.CHUNK_NAMES.get(tag, f'unknown, {kind}')}"
+        yield chunk.content_offset - at - 1, f"  {chunk.length} bytes"
+        yield from _content_sizes(chunk)
+        yield 4, "  " + _checksum(data, at, chunk.content_end)
+        if tag == layout.GRID_TAG:
+            n_left = read_grid(chunk, header).n_tiles
+        elif tag in (layout.MESH_TAG, layout.TILE_TAG):
+            n_left -= 1
+        at = chunk.end
     if at < len(data):
         yield len(data) - at, "trailing: nothing may follow the mesh"
+
+
+def _content_sizes(chunk: Chunk) -> Iterator[tuple[int, str]]:
+    """Size and meaning of each field of the content of a chunk."""
+    size, meanings = 0, {layout.GRID_TAG: "tiles of {} pixels", layout.TILE_TAG: "vertices {}"}
+    if chunk.tag in meanings and chunk.is_whole:
+        number, size = first_number(chunk)
+        yield size, "  " + meanings[chunk.tag].format(number)
+    if chunk.length > size:
+        yield chunk.length - size, "  content"
 
 
 def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vmesh.codec import layout
+from vmesh.codec.listing import read_file
 from vmesh.limits import Limits
 
 
@@ -14,7 +15,8 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
     tags and checksums, is the frame.
     """
-    header, chunks = layout.read_file(data)
+    listing = read_file(data)
+    header = listing.header
     figures: dict[str, Any] = {
         "version": layout.version_name(data[len(layout.SIGNATURE)]),
         "width": header.width,
@@ -25,17 +27,29 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
         "subdivision": header.subdivision,
         "vertices": header.n_vertices,
         "connectivity": layout.CONNECTIVITY_NAMES[header.connectivity],
+        "tiles": None
+        if listing.grid is None
+        else {
+            "side": listing.grid.side,
+            "columns": listing.grid.columns,
+            "rows": listing.grid.rows,
+        },
         "bytes": len(data),
         "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
     }
-    parts = [("frame", len(data) - sum(len(chunk.content) for chunk in chunks))]
-    parts += [(layout.CHUNK_NAMES.get(c.tag, c.tag.decode()), len(c.content)) for c in chunks]
+    ancillary = [
+        (layout.CHUNK_NAMES.get(chunk.tag, chunk.tag.decode()), len(chunk.content))
+        for chunk in listing.ancillary
+    ]
+    coded = [("mesh", sum(len(chunk.content) for _, chunk in listing.found))]
     if by_parts:
         from vmesh.codec.reader import measure
 
         mesh, sizes = measure(data, limits=limits)
         figures["triangles"] = mesh.n_triangles
-        parts[-1:] = sizes.items()
+        coded = list(sizes.items())
+    parts = [*ancillary, *coded]
+    parts.insert(0, ("frame", len(data) - sum(size for _, size in parts)))
     figures["parts"] = [
         {
             "part": name,

@@ -6,7 +6,7 @@
     header      version 1 | format 1 | depth 1, if not 8 | width, height, number of vertices,
                 steps of the components, varints of 1 to 5 | CRC-32 of signature and header 4
     chunk       tag 1 | length, a varint | content, length bytes | CRC-32 of all that 4
-    ...         metadata, then the mesh, M, with which the file ends
+    ...         metadata, then the mesh, with which the file ends: M, or G and a T for each tile
 
     format      bits 0-1  components - 1, or 1: in the next byte
                 bits 2-5  subdivision        bits 6-7  connectivity
@@ -36,9 +36,12 @@ from vmesh.limits import (
 
 FILE_SUFFIX: Final = ".vmesh"
 SIGNATURE: Final = b"\x8bVM\r\n"
-VERSION: Final = (1, 0)
+VERSION: Final = (1, 1)
+"""The latest version. A file that uses nothing of it is of version 1.0."""
 
 MESH_TAG: Final = b"M"
+GRID_TAG: Final = b"G"
+TILE_TAG: Final = b"T"
 METADATA_TAGS: Final = {"icc": b"i", "exif": b"e", "xmp": b"x"}
 
 IMPLIED_TRIANGLES: Final = 0
@@ -51,7 +54,12 @@ CONNECTIVITY_NAMES: Final = {
     LISTED_TRIANGLES: "listed",
     FLIPPED_TRIANGLES: "flipped",
 }
-CHUNK_NAMES: Final = {MESH_TAG: "mesh", **{tag: name for name, tag in METADATA_TAGS.items()}}
+CHUNK_NAMES: Final = {
+    MESH_TAG: "mesh",
+    GRID_TAG: "grid",
+    TILE_TAG: "tile",
+    **{tag: name for name, tag in METADATA_TAGS.items()},
+}
 
 _DEEP: Final = 1  # in place of the components: they follow, with the depth
 _CHECKSUM = struct.Struct("<I")
@@ -79,6 +87,21 @@ class Chunk:
     content: bytes
     offset: int
     content_offset: int
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"chunk {self.tag.decode()}"
+
+    @property
+    def content_end(self) -> int:
+        """Offset of its checksum."""
+        return self.content_offset + self.length
+
+    @property
+    def end(self) -> int:
+        """Offset of what follows it."""
+        return self.content_end + _CHECKSUM.size
 
     @property
     def is_whole(self) -> bool:
@@ -118,9 +141,9 @@ class Header:
         """Rows of lattice sites on the canvas."""
         return (self.height << self.subdivision) + 1
 
-    def pack(self) -> bytes:
-        """Bytes of signature and header, with their checksum."""
-        version = VERSION[0] << 4 | VERSION[1]
+    def pack(self, minor: int = 0) -> bytes:
+        """Bytes of signature and header, with their checksum, of a file of version 1.`minor`."""
+        version = VERSION[0] << 4 | minor
         components = self.n_components - 1 | (self.depth - PLAIN_DEPTH) << 2
         is_deep = self.depth != PLAIN_DEPTH
         form = (_DEEP if is_deep else components) | self.subdivision << 2 | self.connectivity << 6
@@ -148,7 +171,9 @@ def pack_chunk(tag: bytes, content: bytes) -> bytes:
 
 def pack_file(header: Header, chunks: Iterable[tuple[bytes, bytes]]) -> bytes:
     """Bytes of a file of a header and chunks, given as tag and content."""
-    return header.pack() + b"".join(pack_chunk(tag, content) for tag, content in chunks)
+    contents = list(chunks)
+    minor = 1 if any(tag == GRID_TAG for tag, _ in contents) else 0
+    return header.pack(minor) + b"".join(pack_chunk(*chunk) for chunk in contents)
 
 
 def _checked(data: bytes) -> bytes:
@@ -174,34 +199,6 @@ def refuse(error: FormatError) -> None:
     raise error
 
 
-def read_file(data: bytes, complain: Complain = refuse) -> tuple[Header, list[Chunk]]:
-    """The header of a file, every field within its range, and all chunks, the mesh last.
-
-    Checksums are verified, the contents of the chunks are not looked at.
-
-    Parameters
-    ----------
-    data : bytes
-    complain : callable
-        Told of each error after which the file can still be read on. Without one it is raised.
-
-    Raises
-    ------
-    FormatError
-        With the code ``signature``, ``version``, ``truncated``, ``checksum``, ``header``,
-        ``chunk`` or ``trailing``.
-    """
-    header, offset = read_header(data, complain)
-    chunks = list(_iterate_chunks(data, offset, complain))
-    room = len(chunks[-1].content)
-    levels = header.n_vertices * header.n_components
-    if levels > _LEVELS_PER_BYTE * (room + 1):
-        raise FormatError(
-            "header", f"a mesh of {room} bytes cannot hold {levels} colour levels", len(SIGNATURE)
-        )
-    return header, chunks
-
-
 def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     """The header, and the offset of what follows it; parameters and errors of `read_file`."""
     if not is_vmesh(data):
@@ -220,7 +217,7 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     for _ in range(3 + (components & 3) + 1):
         number, end = read_varint(data, end, "header")
         numbers.append(number)
-    _verify(data, 0, end, "the header", complain)
+    verify(data, 0, end, "the header", complain)
     width, height, n_vertices, *steps = numbers
     depth = PLAIN_DEPTH + (components >> 2)
     header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, tuple(steps), depth)
@@ -231,24 +228,6 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     if errors:
         raise errors.pop()
     return header, end + _CHECKSUM.size
-
-
-def read_ancillary(data: bytes) -> list[Chunk]:
-    """The chunks before the mesh of a file, of which this start is known.
-
-    Raises
-    ------
-    FormatError
-        As `read_file`; ``truncated`` if the start ends before the mesh begins.
-    """
-
-    def pass_over(error: FormatError) -> None:
-        if error.code != "truncated":
-            raise error
-
-    _, offset = read_header(data)
-    *ancillary, _ = _iterate_chunks(data, offset, pass_over)
-    return ancillary
 
 
 def read_form(data: bytes, start: int) -> tuple[int, int, int]:
@@ -302,43 +281,32 @@ def _header_complaints(header: Header, is_deep: bool) -> Iterator[str]:
         yield f"expected steps of 1 to {largest}, got {list(header.steps)}"
 
 
-def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Chunk]:
-    """Chunks from an offset up to the mesh, with nothing after it."""
-    known: set[bytes] = set()
-    tag = b""
-    while tag != MESH_TAG:
-        tag = take(data, offset, 1, "a chunk")
-        if not _TAG_PATTERN.fullmatch(tag):
-            raise FormatError("chunk", f"expected a letter as a tag, got {tag!r}", offset)
-        name = f"chunk {tag.decode()}"
-        length, start = read_varint(data, offset + 1, "chunk")
-        chunk = Chunk(tag, length, data[start : start + length], offset, start)
-        if tag == MESH_TAG and len(data) < start + length + _CHECKSUM.size:
-            complain(_truncated(data, name))
-            yield chunk
-            return
-        take(data, start, length, name)
-        _verify(data, offset, start + length, name, complain)
-        if chunk.is_critical and tag != MESH_TAG:
-            complain(FormatError("chunk", f"critical {name} is unknown", offset))
-        if tag in known:
-            complain(FormatError("chunk", f"{name} appears twice", offset))
-        if tag in METADATA_TAGS.values():
-            known.add(tag)
-        yield chunk
-        offset = start + length + _CHECKSUM.size
-    if offset != len(data):
-        complain(FormatError("trailing", f"{len(data) - offset} bytes follow the mesh", offset))
+def read_chunk(data: bytes, offset: int) -> Chunk:
+    """The chunk at an offset, cut short where the file ends; its checksum is not looked at."""
+    tag = take(data, offset, 1, "a chunk")
+    if not _TAG_PATTERN.fullmatch(tag):
+        raise FormatError("chunk", f"expected a letter as a tag, got {tag!r}", offset)
+    length, start = read_varint(data, offset + 1, "chunk")
+    return Chunk(tag, length, data[start : start + length], offset, start)
+
+
+def check_room(header: Header, chunk: Chunk, code: str) -> None:
+    """Refuse a mesh of more colour levels than its bytes can hold, before it is decoded."""
+    room = len(chunk.content)
+    levels = header.n_vertices * header.n_components
+    if levels > _LEVELS_PER_BYTE * (room + 1):
+        text = f"a mesh of {room} bytes cannot hold {levels} colour levels"
+        raise FormatError(code, text, len(SIGNATURE) if code == "header" else chunk.offset)
 
 
 def take(data: bytes, offset: int, length: int, name: str) -> bytes:
     """Bytes of the file, which must go on that far."""
     if len(data) < offset + length:
-        raise _truncated(data, name)
+        raise truncated(data, name)
     return data[offset : offset + length]
 
 
-def _truncated(data: bytes, name: str) -> FormatError:
+def truncated(data: bytes, name: str) -> FormatError:
     """The error of a file that ends too early."""
     return FormatError("truncated", f"the file ends within {name}", len(data))
 
@@ -356,7 +324,7 @@ def read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
     raise FormatError(code, f"expected a number of 0 to {_MAX_VARINT} in its shortest form", offset)
 
 
-def _verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
+def verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
     """Compare the checksum that follows some bytes."""
     (stored,) = _CHECKSUM.unpack(take(data, end, _CHECKSUM.size, name))
     if stored != zlib.crc32(data[start:end]):

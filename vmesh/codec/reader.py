@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from collections import Counter
 
-from vmesh.codec import layout
-from vmesh.codec.layout import Chunk, Header
+from vmesh.codec.layout import SIGNATURE, Complain, refuse
+from vmesh.codec.listing import Listing, read_file
 from vmesh.codec.metadata import read_metadata
 from vmesh.codec.payloads import decode_mesh
+from vmesh.codec.tiles import fill, join
 from vmesh.errors import FormatError, PartialFileWarning
+from vmesh.grid import Grid
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
@@ -30,7 +33,9 @@ def loads(
     allow_partial : bool
         Whether to take a file that was cut off, if all positions are there: some 40 % of it. The
         colours that are missing are predicted from those that came before, which is a whole
-        picture, but a coarser one, and a :class:`PartialFileWarning` says so.
+        picture, but a coarser one, and a :class:`PartialFileWarning` says so. Of a file in tiles
+        one tile has to be there: those that are missing or damaged are filled in from what is
+        around them.
 
     Raises
     ------
@@ -42,6 +47,7 @@ def loads(
     if not allow_partial:
         return measure(data, limits=limits)[0]
     cuts: list[FormatError] = []
+    lost: list[FormatError] = []
 
     def pass_over(error: FormatError) -> None:
         """Note that the file was cut off; all else is an error."""
@@ -49,9 +55,10 @@ def loads(
             raise error
         cuts.append(error)
 
-    mesh, _ = measure(data, limits=limits, complain=pass_over)
-    for cut in cuts:
-        text = f"{cut.message}: what is missing is predicted"
+    mesh, _ = measure(data, limits=limits, complain=pass_over, lose=lost.append)
+    texts = [f"{cut.message}: what is missing is predicted" for cut in cuts]
+    texts += [f"{error.message}: tiles that are lost are filled in" for error in lost[:1]]
+    for text in texts:
         warnings.warn(PartialFileWarning(text), stacklevel=2)
     return mesh
 
@@ -60,30 +67,64 @@ def measure(
     data: bytes | bytearray | memoryview,
     *,
     limits: Limits = DEFAULT_LIMITS,
-    complain: layout.Complain = layout.refuse,
+    complain: Complain = refuse,
+    lose: Complain = refuse,
 ) -> tuple[Mesh, dict[str, int]]:
     """Mesh of the bytes of a ``.vmesh`` file, and how many of them its parts take.
 
-    Parameters and errors are those of :func:`loads`; `complain` is that of `layout.read_file`.
+    Parameters and errors are those of :func:`loads`; `complain` and `lose` are those of
+    `listing.read_file`.
 
     Returns
     -------
     Mesh
     dict
-        Bytes of ``positions``, of ``colors``, and of ``triangles`` if they are not implied. They
-        share one stream: a byte on the bound between two parts belongs to one of them.
+        Bytes of ``positions``, of ``colors``, and of ``triangles`` if they are not implied, over
+        all tiles. They share a stream: a byte on the bound between two parts belongs to one of
+        them.
     """
-    return read_chunks(*layout.read_file(bytes(memoryview(data)), complain), limits, complain)
+    return decode(read_file(bytes(memoryview(data)), complain, lose), limits, complain, lose)
 
 
-def read_chunks(
-    header: Header, chunks: list[Chunk], limits: Limits, complain: layout.Complain
+def decode(
+    listing: Listing, limits: Limits, complain: Complain, lose: Complain
 ) -> tuple[Mesh, dict[str, int]]:
-    """Mesh of the header and the chunks of a file, and the bytes of its parts, as `measure`."""
+    """Mesh of the chunks of a file, and the bytes of its parts, as `measure`."""
+    header, found = listing.header, listing.found
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
-    *ancillary, coded = chunks
-    limits.check_density(header.n_vertices, len(coded.content))
-    metadata = read_metadata(ancillary, limits, complain)
-    mesh, sizes = decode_mesh(coded, header)
+    n_vertices = sum(own.n_vertices for own, _ in found)
+    limits.check_vertices(n_vertices)
+    limits.check_density(n_vertices, sum(len(chunk.content) for _, chunk in found))
+    metadata = read_metadata(listing.ancillary, limits, complain)
+    if listing.grid is None:
+        ((own, chunk),) = found
+        mesh, sizes = decode_mesh(chunk, own)
+    else:
+        limits.check_tiles(listing.grid.n_tiles)
+        mesh, sizes = _decode_tiles(listing, listing.grid, lose)
     return mesh.replaced(metadata=metadata), sizes
+
+
+def _decode_tiles(listing: Listing, grid: Grid, lose: Complain) -> tuple[Mesh, dict[str, int]]:
+    """Mesh of the tiles, those that are lost filled in, and the bytes of its parts."""
+    pieces: list[Mesh | None] = [None] * grid.n_tiles
+    sizes: Counter[str] = Counter()
+    for number, coded in enumerate(listing.coded):
+        if coded is not None:
+            try:
+                pieces[number], parts = decode_mesh(coded.chunk, coded.header)
+                sizes.update(parts)
+            except FormatError as error:
+                lose(error)
+    if not any(pieces):
+        raise FormatError("tiles", "no tile of the file can be read", 0)
+    mesh = join(listing, grid, pieces)
+    if not all(pieces):
+        tiles = zip(grid.tiles(), pieces, strict=True)
+        whole = [piece or fill(mesh, tile) for tile, piece in tiles]
+        return join(listing, grid, whole), dict(sizes)
+    if mesh.n_vertices != listing.header.n_vertices:
+        text = f"expected {listing.header.n_vertices} vertices, the tiles hold {mesh.n_vertices}"
+        raise FormatError("tiles", text, len(SIGNATURE))
+    return mesh, dict(sizes)

@@ -8,12 +8,12 @@ from typing import BinaryIO, Final, NoReturn
 import numpy as np
 
 from vmesh.arrays import Int32Array
-from vmesh.codec.layout import VERSION
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import MeshError
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
+_FIRST_LINE: Final = "vmesh 1.0"  # the version of the text, not of a file
 _MOST_DIGITS: Final = 9  # which 32 bits hold
 _LONGEST_QUOTE: Final = 40  # characters of a line in a message
 
@@ -30,7 +30,7 @@ def mesh_text(mesh: Mesh) -> str:
 
 
 def _lines(mesh: Mesh) -> Iterator[str]:
-    yield f"vmesh {VERSION[0]}.{VERSION[1]}"
+    yield _FIRST_LINE
     yield f"canvas {mesh.width} {mesh.height}"
     yield f"subdivision {mesh.subdivision}"
     yield f"depth {mesh.lattice.depth}"
@@ -62,7 +62,7 @@ def mesh_from_text(text: str, *, limits: Limits = DEFAULT_LIMITS) -> Mesh:
         If the mesh has more vertices or a larger canvas than `limits` allow.
     """
     lines = _Reader(text)
-    lines.expect(f"vmesh {VERSION[0]}.{VERSION[1]}")
+    lines.expect(_FIRST_LINE)
     width, height = lines.numbers("canvas", 2)
     (subdivision,) = lines.numbers("subdivision", 1)
     (depth,) = lines.numbers("depth", 1)

@@ -6,7 +6,9 @@ import zlib
 from collections.abc import Iterator
 
 from vmesh.codec import layout
-from vmesh.codec.payloads import Flips, encode_mesh, find_flips
+from vmesh.codec.payloads import encode_mesh, find_flips
+from vmesh.codec.tiles import cut
+from vmesh.grid import Grid
 from vmesh.mesh import Mesh, Metadata
 
 
@@ -18,7 +20,8 @@ def dumps(mesh: Mesh) -> bytes:
     mesh : Mesh
         A mesh that passes :meth:`Mesh.check`. Its vertices and triangles are written in
         canonical order; the canonical Delaunay triangles cost nothing, triangles that are some
-        flips away cost the flips, others are listed.
+        flips away cost the flips, others are listed. With a `tile` it is written in tiles, which
+        cost the vertices on the lines between them twice.
 
     Raises
     ------
@@ -30,28 +33,46 @@ def dumps(mesh: Mesh) -> bytes:
     """
     mesh.check()
     ordered = mesh.canonical()
-    connectivity, flips = _find_connectivity(ordered)
-    header = layout.Header(
-        width=ordered.width,
-        height=ordered.height,
-        subdivision=ordered.subdivision,
+    if ordered.tile is None:
+        connectivity, (coded,) = _code([ordered])
+        chunks = [(layout.MESH_TAG, coded)]
+    else:
+        grid = Grid(ordered.width, ordered.height, ordered.tile)
+        pieces = cut(ordered, grid)
+        connectivity, contents = _code(pieces)
+        chunks = [(layout.GRID_TAG, layout.pack_varint(grid.side))]
+        for piece, content in zip(pieces, contents, strict=True):
+            chunks.append((layout.TILE_TAG, layout.pack_varint(piece.n_vertices) + content))
+    metadata = _metadata_contents(ordered.metadata)
+    return layout.pack_file(_header(ordered, connectivity), [*metadata, *chunks])
+
+
+def _code(meshes: list[Mesh]) -> tuple[int, list[bytes]]:
+    """Meshes in canonical order as they are coded, and the one way to tell all their triangles."""
+    flips = [find_flips(mesh) for mesh in meshes]
+    if any(some is None for some in flips):
+        connectivity = layout.LISTED_TRIANGLES
+    elif any(some is not None and len(some.removed) for some in flips):
+        connectivity = layout.FLIPPED_TRIANGLES
+    else:
+        connectivity = layout.IMPLIED_TRIANGLES
+    return connectivity, [
+        encode_mesh(mesh, _header(mesh, connectivity), some)
+        for mesh, some in zip(meshes, flips, strict=True)
+    ]
+
+
+def _header(mesh: Mesh, connectivity: int) -> layout.Header:
+    """Header of a mesh, or of the file of one."""
+    return layout.Header(
+        width=mesh.width,
+        height=mesh.height,
+        subdivision=mesh.subdivision,
         connectivity=connectivity,
-        n_vertices=ordered.n_vertices,
-        steps=ordered.lattice.steps,
-        depth=ordered.lattice.depth,
+        n_vertices=mesh.n_vertices,
+        steps=mesh.lattice.steps,
+        depth=mesh.lattice.depth,
     )
-    coded = (layout.MESH_TAG, encode_mesh(ordered, header, flips))
-    return layout.pack_file(header, [*_metadata_contents(ordered.metadata), coded])
-
-
-def _find_connectivity(mesh: Mesh) -> tuple[int, Flips | None]:
-    """How the triangles of a canonical mesh are best told, and the flips if by flips."""
-    flips = find_flips(mesh)
-    if flips is None:
-        return layout.LISTED_TRIANGLES, None
-    if not len(flips.removed):
-        return layout.IMPLIED_TRIANGLES, None
-    return layout.FLIPPED_TRIANGLES, flips
 
 
 def metadata_size(metadata: Metadata) -> int:
