@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from numba import njit
 
@@ -54,3 +55,18 @@ def test_kernels_work_without_a_writable_cache(monkeypatch: pytest.MonkeyPatch) 
         return 2 * x
 
     assert double(21) == 42
+
+
+def test_only_a_kernel_that_may_make_arrays_counts_references() -> None:
+    def first(values: Any) -> Any:
+        while values[0] < 0:
+            values[0] += 1
+        return values[0]
+
+    def counts(decorate: Any) -> bool:
+        compiled = decorate(first)
+        assert compiled(np.array([-3, 5])) == 0
+        return "NRT_incref" in next(iter(compiled.inspect_llvm().values()))
+
+    assert counts(jit.kernel)
+    assert not counts(jit.lean_kernel)

@@ -13,7 +13,6 @@ Both sides know the positions before they code a colour, so the order costs noth
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -71,11 +70,11 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
     )
     # The corners, each with the one before as its parent, then the layers, the last one first.
     corners = np.flatnonzero(is_corner).astype(np.int32)
-    layers = [np.arange(a, b) for a, b in pairwise([0, *ends.tolist()])]
-    backwards = np.concatenate([np.zeros(0, dtype=np.int64), *layers[::-1]])
+    layers = np.split(np.arange(len(taken)), ends[:-1])
+    backwards = np.concatenate(layers[::-1])
     counts = counts[backwards]
     is_parent = np.arange(neighbours.shape[1]) < counts[:, None]
-    starts = np.cumsum([0, 0, 1, 1, 1, *counts.tolist()])
+    starts = np.cumsum(np.concatenate([[0, 0, 1, 1, 1], counts]))
     return Hierarchy(
         np.concatenate([corners, taken[backwards]]),
         starts,

@@ -37,7 +37,9 @@ import numpy as np
 
 from vmesh.arrays import BoolArray, Int32Array, Int64Array
 from vmesh.errors import LimitError
-from vmesh.kernels.jit import inner_kernel, kernel
+from vmesh.kernels.jit import inner_kernel, kernel, lean_kernel
+
+SHORT = 1 << 30  # squares of sides below this are short
 
 FLIPS_PER_POINT = 64
 FLIPS = 1 << 20
@@ -53,7 +55,7 @@ def cross(ax: int, ay: int, bx: int, by: int, cx: int, cy: int) -> int:
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@kernel
+@lean_kernel
 def in_circle(ax: int, ay: int, bx: int, by: int, cx: int, cy: int, dx: int, dy: int) -> int:
     """Sign of the in-circle determinant: 1 if d is inside the circle of the positive a, b, c.
 
@@ -72,6 +74,10 @@ def in_circle(ax: int, ay: int, bx: int, by: int, cx: int, cy: int, dx: int, dy:
     t0 = bx * cy - by * cx
     t1 = cx * ay - cy * ax
     t2 = ax * by - ay * bx
+    # Cross products are not larger than their sides' squares, so this fits 64 bits.
+    if s0 | s1 | s2 < SHORT:
+        det = s0 * t0 + s1 * t1 + s2 * t2
+        return 1 if det > 0 else -1 if det < 0 else 0
     high = s0 * (t0 >> 20) + s1 * (t1 >> 20) + s2 * (t2 >> 20)
     low = s0 * (t0 & 0xFFFFF) + s1 * (t1 & 0xFFFFF) + s2 * (t2 & 0xFFFFF)
     high += low >> 20
@@ -449,7 +455,7 @@ def remove_vertex(
                 continue
             is_ear = True
             for k in range(n_left):
-                if k not in (before, i, after) and is_within(points, a, b, c, ring[k]):
+                if k not in (before, i, after) and is_within(points, b, c, a, ring[k]):
                     is_ear = False
                     break
             if is_ear:
@@ -514,20 +520,19 @@ def peel(
     counts = np.zeros(n_points, np.int64)
     ends = np.empty(n_points, np.int64)
     is_taken = np.zeros(n_points, np.bool_)
+    beside = np.full(n_points, -1, np.int32)  # the last layer that took a neighbour
     star = np.empty(max_triangles, np.int32)
     ring, outer = np.empty(max_triangles + 1, np.int32), np.empty(max_triangles + 1, np.int32)
     n_taken, n_layers, before = 0, 0, -1
     while n_taken > before:
         before = n_taken
         for v in left:
-            if kept[v]:
+            if kept[v] or beside[v] == n_layers:
                 continue
             size, _ = collect_ring(origin, twin, leaving[v], star, ring)
             for k in range(size):
                 neighbours[n_taken, k] = ring[k]
-                if is_taken[ring[k]]:
-                    size = 0
-                    break
+                beside[ring[k]] = n_layers
             if size > 0:
                 taken[n_taken] = v
                 counts[n_taken] = size

@@ -25,7 +25,7 @@ from math import comb
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array, UInt8Array
-from vmesh.kernels.jit import inner_kernel, kernel
+from vmesh.kernels.jit import inner_kernel, kernel, lean_kernel
 
 # Fields of the coder's state, an int64 array of N_FIELDS.
 DECODING = 0  # 1 when reading, 0 when writing
@@ -163,7 +163,7 @@ def finish(coder: Int64Array, data: UInt8Array) -> int:
     return length
 
 
-@kernel
+@lean_kernel
 def code_bit(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, bit: int) -> int:
     """Write `bit`, or read one and return it, by the odds of context c; adapt them."""
     p, n = odds[c, 0], odds[c, 1]
@@ -188,7 +188,7 @@ def code_bit(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, bit:
     return bit
 
 
-@kernel
+@lean_kernel
 def code_number(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, number: int) -> int:
     """Code a number of 0 or more: the bit length of number + 1 in unary, then its lower bits.
 
@@ -397,15 +397,17 @@ def code_levels(
     n_parents = np.int64(0)
     for i in range(order.shape[0]):
         n_parents = max(n_parents, starts[i + 1] - starts[i])
-    weights = np.empty(n_parents, np.int64)
+    own, weights = np.empty(n_parents, np.int32), np.empty(n_parents, np.int64)
     for i in range(order.shape[0]):
-        v, own = order[i], parents[starts[i] : starts[i + 1]]
-        weights[:] = 4096
+        v, first, n_own = order[i], starts[i], starts[i + 1] - starts[i]
+        for j in range(n_own):
+            own[j] = parents[first + j]
+            weights[j] = 4096
         for z in range(levels.shape[1]):
             if z == 1:  # the first component is known by now
-                weigh(levels, v, own, weights)
+                weigh(levels, v, own, n_own, weights)
             total, weight = np.int64(0), np.int64(0)
-            for j in range(own.shape[0]):
+            for j in range(n_own):
                 total += weights[j] * levels[own[j], z]
                 weight += weights[j]
             prediction, spread, lean = np.int64(0), N_SPREADS - 1, 0
@@ -414,7 +416,7 @@ def code_levels(
                 # Whether the mean was rounded down or up by more than 3/20.
                 rest = 20 * (total - prediction * weight)
                 lean = 1 if rest > 3 * weight else (2 if rest < -3 * weight else 0)
-                spread = spread_of(levels, z, own, weights, prediction)
+                spread = spread_of(levels, z, own, n_own, weights, prediction)
             base = z * COMPONENT_CONTEXTS
             context = base + spread * SIZE_CONTEXTS
             error = levels[v, z] - prediction
@@ -433,16 +435,23 @@ def code_levels(
 
 
 @inner_kernel
-def weigh(levels: Int32Array, v: int, parents: Int32Array, weights: Int64Array) -> None:
+def weigh(
+    levels: Int32Array, v: int, parents: Int32Array, n_parents: int, weights: Int64Array
+) -> None:
     """Fill in the weights of a vertex's parents by how much they differ in the first component."""
-    for j in range(parents.shape[0]):
+    for j in range(n_parents):
         difference = abs(levels[parents[j], 0] - levels[v, 0])
         weights[j] = max(4096 // (1 + 2 * difference), 1)
 
 
 @inner_kernel
 def spread_of(
-    levels: Int32Array, z: int, parents: Int32Array, weights: Int64Array, prediction: np.int64
+    levels: Int32Array,
+    z: int,
+    parents: Int32Array,
+    n_parents: int,
+    weights: Int64Array,
+    prediction: np.int64,
 ) -> int:
     """Class of the weighted variance of the parents' levels around their mean.
 
@@ -450,7 +459,7 @@ def spread_of(
     sums within 64 bits.
     """
     total, weight, squares = np.int64(0), np.int64(0), np.int64(0)
-    for j in range(parents.shape[0]):
+    for j in range(n_parents):
         deviation = np.int64(
             min(max(levels[parents[j], z] - prediction, -LARGEST_DEVIATION), LARGEST_DEVIATION)
         )
@@ -464,7 +473,7 @@ def spread_of(
     return spread
 
 
-@kernel
+@lean_kernel
 def code_size(coder: Int64Array, data: UInt8Array, odds: Int64Array, c: int, size: int) -> int:
     """Code the size of a difference: in unary up to N_UNARY, what is more in bits of its length.
 
@@ -509,12 +518,21 @@ def flip(origin: Int32Array, twin: Int32Array, e: int | np.int64) -> None:
 
 
 @inner_kernel
-def cotangent(points: Int64Array, a: int, b: int, c: int) -> tuple[int, int]:
-    """Cotangent of the angle at a in sixteenths, rounded down, and the doubled area of a, b, c."""
+def area(points: Int64Array, a: int, b: int, c: int) -> int:
+    """Doubled signed area of the triangle a, b, c."""
     bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
-    area = bx * cy - by * cx
-    return 16 * (bx * cx + by * cy) // max(area, 1), area
+    doubled: int = bx * cy - by * cx
+    return doubled
+
+
+@inner_kernel
+def cotangent(points: Int64Array, a: int, b: int, c: int) -> int:
+    """Cotangent of the angle at a of the positive triangle a, b, c in sixteenths, rounded down."""
+    bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+    cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
+    sixteenths: int = 16 * (bx * cx + by * cy) // max(bx * cy - by * cx, 1)
+    return sixteenths
 
 
 @kernel
@@ -583,14 +601,11 @@ def code_flips(
         e_next, e_prev = e - 2 if e % 3 == 2 else e + 1, e + 2 if e % 3 == 0 else e - 1
         f_next, f_prev = f - 2 if f % 3 == 2 else f + 1, f + 2 if f % 3 == 0 else f - 1
         a, b, c, d = origin[e_prev], origin[e], origin[f], origin[f_prev]
-        _, left = cotangent(points, a, d, c)
-        _, right = cotangent(points, d, a, b)
-        if left <= 0 or right <= 0:
+        if area(points, a, d, c) <= 0 or area(points, d, a, b) <= 0:
             continue
-        at_a, _ = cotangent(points, a, b, c)
-        at_d, _ = cotangent(points, d, c, b)
+        cotangents = cotangent(points, a, b, c) + cotangent(points, d, c, b)
         angles = 0
-        while angles < N_ANGLES - 1 and at_a + at_d >= ANGLES[angles]:
+        while angles < N_ANGLES - 1 and cotangents >= ANGLES[angles]:
             angles += 1
         along, across = abs(levels[b] - levels[c]), abs(levels[a] - levels[d])
         if along == across:

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 # No wrapper for C: nothing calls kernels from there.
 _OPTIONS: Final[dict[str, Any]] = {"nogil": True, "no_cfunc_wrapper": True}
-_INNER_OPTIONS: Final[dict[str, Any]] = {**_OPTIONS, "no_cpython_wrapper": True}
+# No counting of references: it would take up to six locked instructions in each call of a kernel
+# with arrays, most of the time of a small one.
+_LEAN_OPTIONS: Final[dict[str, Any]] = {**_OPTIONS, "_nrt": False}
+_INNER_OPTIONS: Final[dict[str, Any]] = {**_LEAN_OPTIONS, "no_cpython_wrapper": True}
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -26,19 +29,29 @@ def kernel(function: Function) -> Function:
     on its number of threads. Where no cache folder is writable the code is compiled anew in each
     process.
     """
-    try:
-        return cast("Function", njit(cache=True, **_OPTIONS)(function))
-    except RuntimeError:  # Numba found no folder that it may write its cache to.
-        return cast("Function", njit(**_OPTIONS)(function))
+    return _cached(function, _OPTIONS)
+
+
+def lean_kernel(function: Function) -> Function:
+    """A kernel that makes no arrays, for other kernels of its own file to call in their loops."""
+    return _cached(function, _LEAN_OPTIONS)
 
 
 def inner_kernel(function: Function) -> Function:
-    """Compile a function that only kernels of its own file call: there is no way in from Python.
+    """A lean kernel that nothing but kernels of its own file calls: no way in from Python.
 
     Not making one takes up to half off the time that its compilation takes. A call from Python
     ends the process.
     """
     return cast("Function", njit(**_INNER_OPTIONS)(function))
+
+
+def _cached(function: Function, options: dict[str, Any]) -> Function:
+    """Compile a function, and keep it where there is a place for that."""
+    try:
+        return cast("Function", njit(cache=True, **options)(function))
+    except RuntimeError:  # Numba found no folder that it may write its cache to.
+        return cast("Function", njit(**options)(function))
 
 
 class _FirstCompilation(event.Listener):

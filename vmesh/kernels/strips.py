@@ -53,7 +53,7 @@ def find_strips(triangles: Int32Array, twins: Int32Array) -> tuple[UInt8Array, I
     return _write(triangles, entries)
 
 
-@inner_kernel
+@kernel
 def _cover(twins: Int32Array, n_triangles: int) -> Int32Array:
     """Paths through all triangles, one after the other, shape (m, 2), int32.
 
@@ -102,7 +102,7 @@ def _best_way(t: int, twins: Int32Array, drawn: BoolArray) -> int:
     return best
 
 
-@inner_kernel
+@kernel
 def _write(triangles: Int32Array, path: Int32Array) -> tuple[UInt8Array, Int32Array]:
     """Flags and vertices of the paths."""
     flags = np.zeros(3 * path.shape[0], np.uint8)
