@@ -7,9 +7,10 @@ meta:
   endian: le
   bit-endian: le
 doc: |
-  Container and header of version 1.0; `vmesh.md`, sections 3 and 4, is what counts. The content of
-  the chunk `M` is an arithmetic code (sections 5 to 8), which cannot be described here. Checksums,
-  shortest forms of numbers and ranges are not checked, nor that nothing follows the last chunk.
+  Container and header of version 1.1; `vmesh.md`, sections 3 and 4, is what counts. The content of
+  the chunk `M`, and most of that of `T`, is an arithmetic code (sections 5 to 8), which cannot be
+  described here. Checksums, shortest forms of numbers, ranges and the order of the chunks are not
+  checked, nor that a file ends where it should.
 doc-ref: vmesh.md
 seq:
   - id: signature
@@ -18,8 +19,7 @@ seq:
     type: header
   - id: chunks
     type: chunk
-    repeat: until
-    repeat-until: _.tag == 'M'
+    repeat: eos
 types:
   header:
     seq:
@@ -77,9 +77,26 @@ types:
         type: varint
       - id: content
         size: length.value
+        type:
+          switch-on: tag
+          cases:
+            '"G"': grid
+            '"T"': tile
       - id: crc
         type: u4
         doc: CRC-32 of tag, length and content
+  grid:
+    seq:
+      - id: side
+        type: varint
+        doc: of the tiles, in pixels
+  tile:
+    doc: One of the tiles of the grid; they come row by row from the top, each row from the left.
+    seq:
+      - id: n_vertices
+        type: varint
+      - id: coded
+        size-eos: true
   varint:
     doc: A number in groups of seven bits, the lowest first.
     seq:

@@ -45,10 +45,10 @@ def tiled(
     for tile in Grid(width, height, side).tiles():
         corner, size = np.array([tile[:2], tile[2:]]) * unit
         within = ((points >= corner) & (points <= corner + size)).all(axis=1)
-        own = points[within] - corner.astype(np.int32)
+        own = (points[within] - corner).astype(np.int32)
         piece = Mesh(
             tile.width, tile.height, own, delaunay(own), levels[within], lattice, subdivision
         )
         triangles.append(np.flatnonzero(within)[change(piece).triangles])
-    faces = np.concatenate(triangles)
+    faces = np.concatenate(triangles).astype(np.int32)
     return Mesh(width, height, points, faces, levels, lattice, subdivision, tile=side).canonical()

@@ -17,6 +17,7 @@ from PIL import Image
 import vmesh
 from tests.cli.program import fail, run, succeed
 from tests.pictures import ramp
+from tests.tiled import tiled
 from vmesh.codec import layout
 from vmesh.metrics import psnr
 
@@ -223,6 +224,17 @@ def test_info_tells_how_the_triangles_are_coded(file: Path, tmp_path: Path) -> N
     implied = tmp_path / "implied.vmesh"
     succeed("encode", CHELSEA, implied, "--method", "blue-noise", "--vertices", "200")
     assert json.loads(succeed("info", implied, "--json"))["connectivity"] == "implied"
+
+
+def test_info_tells_the_tiles_of_a_mesh(file: Path, tmp_path: Path) -> None:
+    assert json.loads(succeed("info", file, "--json"))["tiles"] is None
+    tiles = tmp_path / "tiles.vmesh"
+    vmesh.dump(tiled(40, 30, 16, 3, n_vertices=50), tiles)
+    figures = json.loads(succeed("info", tiles, "--json", "--parts"))
+    assert figures["tiles"] == {"side": 16, "columns": 3, "rows": 2}
+    assert sum(part["bytes"] for part in figures["parts"]) == tiles.stat().st_size
+    assert b"3 x 2 tiles of 16 pixels" in succeed("info", tiles)
+    assert b"tiles of 16 pixels" in succeed("dump", tiles)
 
 
 def test_info_decodes_the_mesh_if_asked_to(file: Path) -> None:

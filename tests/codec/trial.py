@@ -14,7 +14,9 @@ from vmesh.limits import Limits
 from vmesh.mesh import Mesh
 
 # A count of up to 2**31 vertices is a changed byte away: so a trial takes little time.
-SMALL: Final = Limits(max_pixels=1 << 22, max_vertices=1 << 14, max_metadata=1 << 20)
+SMALL: Final = Limits(
+    max_pixels=1 << 22, max_vertices=1 << 14, max_tiles=1 << 8, max_metadata=1 << 20
+)
 _MAX_DRAWN: Final = 1 << 12
 
 

@@ -41,14 +41,15 @@ def test_the_first_run_announces_that_it_compiles_and_the_second_does_not(tmp_pa
     assert run(tmp_path) == ["done"]
 
 
-def test_kernels_work_without_a_writable_cache(monkeypatch: pytest.MonkeyPatch) -> None:
-    # What Numba does where it finds no folder to write to.
-    def refuse(**options: Any) -> Any:
-        if options.get("cache"):
-            raise RuntimeError("cannot cache function: no locator available")
-        return njit(**options)
+def without_cache(**options: Any) -> Any:
+    """What Numba does where it finds no folder to write to."""
+    if options.get("cache"):
+        raise RuntimeError("cannot cache function: no locator available")
+    return njit(**options)
 
-    monkeypatch.setattr(jit, "njit", refuse)
+
+def test_kernels_work_without_a_writable_cache(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jit, "njit", without_cache)
 
     @jit.kernel
     def double(x: int) -> int:
@@ -57,7 +58,11 @@ def test_kernels_work_without_a_writable_cache(monkeypatch: pytest.MonkeyPatch) 
     assert double(21) == 42
 
 
-def test_only_a_kernel_that_may_make_arrays_counts_references() -> None:
+def test_only_a_kernel_that_may_make_arrays_counts_references(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(jit, "njit", without_cache)  # Code from a cache cannot be looked at.
+
     def first(values: Any) -> Any:
         while values[0] < 0:
             values[0] += 1
@@ -66,7 +71,7 @@ def test_only_a_kernel_that_may_make_arrays_counts_references() -> None:
     def counts(decorate: Any) -> bool:
         compiled = decorate(first)
         assert compiled(np.array([-3, 5])) == 0
-        return "NRT_incref" in next(iter(compiled.inspect_llvm().values()))
+        return "NRT_decref" in next(iter(compiled.inspect_llvm().values()))
 
     assert counts(jit.kernel)
     assert not counts(jit.lean_kernel)

@@ -35,6 +35,11 @@ class Reader:
         self.at = 8 * (start + length)
         return taken
 
+    @property
+    def is_at_end(self) -> bool:
+        """Whether all bytes were taken."""
+        return self.at == 8 * len(self.data)
+
 
 class Repeated(list[Any]):
     """A field that repeats; expressions ask for its size."""
@@ -70,6 +75,10 @@ def _read(field: Spec, reader: Reader, record: Any, known: Spec, spec: Spec) -> 
     if repeat is None:
         return _read_one(field, reader, record, known, spec)
     found = Repeated()
+    if repeat == "eos":
+        while not reader.is_at_end:
+            found.append(_read_one(field, reader, record, known, spec))
+        return found
     while repeat == "until" or len(found) < evaluate(field["repeat-expr"], **vars(record)):
         found.append(_read_one(field, reader, record, known, spec))
         if repeat == "until" and evaluate(field["repeat-until"], _=found[-1]):
@@ -85,12 +94,20 @@ def _read_one(field: Spec, reader: Reader, record: Any, known: Spec, spec: Spec)
         wanted = b"".join(parts)
         assert reader.take(len(wanted)) == wanted, "fixed bytes are as stated"
         return wanted
-    if kind in known:
+    if isinstance(kind, str) and kind in known:
         return parse(known[kind], reader, known)
-    if kind in _INTEGERS:
+    if isinstance(kind, str) and kind in _INTEGERS:
         return int.from_bytes(reader.take(_INTEGERS[kind]), "little")
-    if kind and re.fullmatch(r"b[1-8]", kind):
+    if isinstance(kind, str) and re.fullmatch(r"b[1-8]", kind):
         number = reader.bits(int(kind[1:]))
         return spec["enums"][field["enum"]][number] if "enum" in field else number
+    if field.get("size-eos"):
+        return reader.take(len(reader.data) - reader.at // 8)
     content = reader.take(evaluate(field["size"], **vars(record)))
+    if isinstance(kind, dict):
+        value = evaluate(kind["switch-on"], **vars(record))
+        case = kind["cases"].get(f'"{value}"')
+        # As the runtime of Kaitai does: the bytes stay beside what is made of them.
+        record._raw_content = content
+        return parse(known[case], Reader(content), known) if case else content
     return content.decode(field["encoding"]) if kind == "str" else content

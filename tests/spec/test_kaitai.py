@@ -14,6 +14,7 @@ import yaml
 
 from tests.spec.kaitai import Reader, parse
 from vmesh.codec import layout
+from vmesh.codec.listing import read_file
 
 _SPEC: Final = Path(__file__).parents[2] / "spec"
 _KSY: Final = yaml.safe_load((_SPEC / "vmesh.ksy").read_text(encoding="utf-8"))
@@ -43,6 +44,11 @@ def has_compiler() -> bool:
     return node("require.resolve('kaitai-struct-compiler')").returncode == 0
 
 
+def content_of(chunk: Any) -> Any:
+    """The bytes of the content of a chunk."""
+    return getattr(chunk, "_raw_content", chunk.content)
+
+
 def figures_of(file: Any) -> dict[str, Any]:
     """What a file says by its description; the connectivity by its name."""
     header = file.header
@@ -56,13 +62,20 @@ def figures_of(file: Any) -> dict[str, Any]:
         "n_vertices": header.n_vertices.value,
         "depth": 8 + (header.deep.depth_less_8 if header.kind == 1 else 0),
         "steps": [step.value for step in header.steps],
-        "chunks": [(chunk.tag, chunk.length.value, chunk.content) for chunk in file.chunks],
+        "chunks": [(chunk.tag, chunk.length.value, content_of(chunk)) for chunk in file.chunks],
+        "sides": [chunk.content.side.value for chunk in file.chunks if chunk.tag == "G"],
+        "tiles": [
+            (chunk.content.n_vertices.value, chunk.content.coded)
+            for chunk in file.chunks
+            if chunk.tag == "T"
+        ],
         "checksums": [header.crc, *(chunk.crc for chunk in file.chunks)],
     }
 
 
 def expected(data: bytes) -> dict[str, Any]:
     """The same by the reader of the library."""
+    listing = read_file(data)
     header, at = layout.read_header(data)
     ends, chunks = [at - 4], []
     while at < len(data):
@@ -80,6 +93,10 @@ def expected(data: bytes) -> dict[str, Any]:
         "depth": header.depth,
         "steps": list(header.steps),
         "chunks": [(chunk.tag.decode(), chunk.length, chunk.content) for chunk in chunks],
+        "sides": [listing.grid.side] if listing.grid else [],
+        "tiles": [(own.n_vertices, chunk.content) for own, chunk in listing.found]
+        if listing.grid
+        else [],
         "checksums": [int.from_bytes(data[end : end + 4], "little") for end in ends],
     }
 

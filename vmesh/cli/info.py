@@ -46,6 +46,7 @@ def _table(figures: dict[str, Any]) -> str:
         f"{figures['vertices']} vertices ({density:.2%} of the pixels) "
         f"on 1/{1 << figures['subdivision']} pixel, {figures['connectivity']} {triangles}",
         f"colour steps {', '.join(map(str, figures['color_steps']))}",
+        *_tiles(figures["tiles"]),
         f"{figures['bytes']} bytes, {figures['bits_per_vertex']:.2f} bits per vertex",
         "",
         "part           bytes  bits per vertex",
@@ -55,3 +56,10 @@ def _table(figures: dict[str, Any]) -> str:
         for part in figures["parts"]
     ]
     return "\n".join(lines)
+
+
+def _tiles(tiles: dict[str, int] | None) -> list[str]:
+    """The line about tiles, if there are any."""
+    if tiles is None:
+        return []
+    return [f"{tiles['columns']} x {tiles['rows']} tiles of {tiles['side']} pixels"]

@@ -20,6 +20,7 @@ def limit_options(command: Command) -> Command:
             DEFAULT_LIMITS.max_vertices_per_byte,
             f"Most vertices for a byte of coded mesh, beyond the first {FREE_VERTICES:,}.",
         ),
+        ("--max-tiles", DEFAULT_LIMITS.max_tiles, "Most tiles of a mesh."),
         ("--max-vertices", DEFAULT_LIMITS.max_vertices, "Most vertices of a mesh."),
         ("--max-pixels", DEFAULT_LIMITS.max_pixels, "Most pixels of a picture."),
     ):
@@ -32,5 +33,5 @@ def limit_options(command: Command) -> Command:
 
 def take_limits(options: dict[str, Any]) -> Limits:
     """Limits of a command's options, which lose them."""
-    names = ("max_pixels", "max_vertices", "max_vertices_per_byte")
+    names = ("max_pixels", "max_vertices", "max_tiles", "max_vertices_per_byte")
     return Limits(**{name: options.pop(name) for name in names})
