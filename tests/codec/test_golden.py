@@ -1,4 +1,4 @@
-"""Files of version 1.0 that are never edited: what they decode to holds for every later reader.
+"""Files of versions 1.0 and 1.1 that are never edited: what they decode to holds for every later reader.
 
 A test of these that fails says that files of users would change: the program is wrong, not the
 test.
@@ -60,6 +60,11 @@ GOLDEN: Final = {
         "8fb7744461b2ed241f79babab2a23e2c5a474f0b53c455f77afbde12e2a3d11a",
         "71524feff4cd4ead6b8f93089c61ee9e7bf66925ebf911d0c67a7a9d19f4bdc7",
         "f80c047198fb0cf20e618371c6e9fb66546be3af93631a6fa864296402f74038",
+    ),
+    "tiles": (
+        "3c726e3435a2fb6614f614140ec900200a2978560bf7df9d788275a4ceccffeb",
+        "48f2bc8a10173932990aa336f960296eab6b85e6bda1002313f04b8dad6ada07",
+        "435b859a64dc4dd760d6ec1b4ee7d28d0eecbdbfade6e23d49c94644ad85230c",
     ),
 }
 
