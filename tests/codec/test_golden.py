@@ -1,4 +1,4 @@
-"""Files of versions 1.0 and 1.1 that are never edited: what they decode to holds for every later reader.
+"""Files of versions 1.0 and 1.1 that are never edited: later readers decode them to the same.
 
 A test of these that fails says that files of users would change: the program is wrong, not the
 test.
