@@ -135,10 +135,13 @@ def _remesh(
         draft = thinned(image, settings, lambda: report("thinning"), run)
     else:
         draft = thinned_tiles(image, finisher.grid, settings, lambda: report("thinning"), run)
-    n_vertices = settings.n_vertices(width, height) or draft.n_vertices
+    wanted = settings.n_vertices(width, height)
+    n_vertices = wanted or draft.n_vertices
     if settings.target_size is not None:
         n_vertices = refined_vertices(finisher.finish(draft), settings.target_size)
     draft.refine(min(n_vertices, width * height), lambda: report("refinement"))
+    if wanted is not None and draft.n_vertices != min(wanted, width * height):
+        draft.resize(min(wanted, width * height))
     return draft
 
 

@@ -163,6 +163,6 @@ class Settings:
         return self.vertices
 
     def with_goal(self, **goal: float) -> Settings:
-        """The settings with another goal."""
+        """The settings with another goal, or none."""
         changes: dict[str, Any] = {**dict.fromkeys(GOALS), **goal}
         return replace(self, **changes)

@@ -33,6 +33,7 @@ _CAUTION: Final = 4.0
 # A search for a number ends where there are so many times more.
 _NEAR: Final = 1.1
 _MAX_THINNINGS: Final = 8
+_SMALL_CHANGE: Final = 0.05  # of the vertices of a tile
 # How often the tiles' numbers are corrected for the vertices that they share.
 _MAX_CORRECTIONS: Final = 8
 REPORTS: Final = 6
@@ -73,11 +74,12 @@ class TiledDraft(Generic[Part]):
         return sum(part.error for part in self._parts)
 
     def resize(self, n_vertices: int) -> None:
-        """Change the number of vertices, that of each tile in proportion."""
+        """Change the number of vertices of the joined mesh to about this."""
         for _ in range(_MAX_CORRECTIONS):
-            if self.n_vertices == n_vertices:
+            numbers = self._numbers(n_vertices)
+            if self.n_vertices == n_vertices or numbers == self._counts:
                 break
-            self._resize_parts(self._in_proportion(n_vertices))
+            self._resize_parts(numbers)
 
     def geometry(self) -> tuple[Int32Array, Int32Array]:
         """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""
@@ -86,14 +88,18 @@ class TiledDraft(Generic[Part]):
         return self._joined
 
     @property
+    def _counts(self) -> list[int]:
+        return [part.n_vertices for part in self._parts]
+
+    @property
     def _n_apart(self) -> int:
         """Number of vertices of all tiles, those that they share counted in each."""
-        return sum(part.n_vertices for part in self._parts)
+        return sum(self._counts)
 
-    def _in_proportion(self, n_vertices: int) -> list[int]:
+    def _numbers(self, n_vertices: int) -> list[int]:
         """Numbers of vertices for the tiles, to be about so many when they are joined."""
         total = round(self._n_apart * n_vertices / self.n_vertices)
-        return apportion([part.n_vertices for part in self._parts], total)
+        return apportion(self._counts, total)
 
     def _resize_parts(self, numbers: list[int]) -> None:
         pairs = zip(self._parts, numbers, strict=True)
@@ -166,10 +172,20 @@ class TiledRemesher(TiledDraft[Remesher]):
             self._cost = self._next_cost(excess)
 
     def refine(self, n_vertices: int, report: Callable[[], None]) -> None:
-        """Refine each tile, as :meth:`Remesher.refine` does, to so many vertices in all."""
-        jobs = list(zip(self._parts, self._in_proportion(n_vertices), strict=True))
+        """Refine each tile, as :meth:`Remesher.refine` does, to about so many vertices in all."""
+        jobs = list(zip(self._parts, super()._numbers(n_vertices), strict=True))
         self._do(lambda job: job[0].refine(job[1], _say_nothing), jobs, report)
-        self.resize(n_vertices)
+
+    def _numbers(self, n_vertices: int) -> list[int]:
+        """Numbers of vertices for the tiles: one alone makes up for a small difference."""
+        numbers = self._counts
+        change = n_vertices - self.n_vertices
+        enough = [number for number in numbers if _SMALL_CHANGE * number >= abs(change)]
+        if not enough:
+            return super()._numbers(n_vertices)
+        # The smallest such tile takes the least time.
+        numbers[numbers.index(min(enough))] += change
+        return numbers
 
     def _excess(self, n_vertices: int, max_error: float) -> float:
         """How many times more vertices there are than wanted, or than the error allows."""
