@@ -175,13 +175,13 @@ def test_a_triangle_in_a_corner_fans_out_to_two_sides() -> None:
 
 
 def test_vertices_beside_a_line_are_put_on_it() -> None:
-    left = with_corners((63, 11), (63, 31), (1, 31), (31, 31))
-    right = with_corners((1, 31), (3, 41), (31, 63))
+    left = with_corners((63, 11), (61, 31), (1, 31), (31, 31))
+    right = with_corners((1, 31), (5, 41), (31, 63))
     mesh = joined(left, right, columns=2)
     x, y = mesh.vertices.T
     assert sorted(y[x == 64].tolist()) == [0, 11, 31, 64]
     # The sides of the canvas are no lines between tiles.
-    assert {(1, 31), (67, 41), (95, 63)} <= set(zip(x.tolist(), y.tolist(), strict=True))
+    assert {(1, 31), (69, 41), (95, 63)} <= set(zip(x.tolist(), y.tolist(), strict=True))
 
 
 def test_any_tiles_are_joined_to_a_sound_mesh() -> None:
