@@ -69,7 +69,8 @@ class Settings:
         components' steps follow from it. It follows from the error unless given.
     tile : int, optional
         Side in pixels, 32 to 2048, of tiles that the mesh is made of: each is worked on, and held
-        in the file, as a picture of its own ("adaptive"). A picture that fits one tile has none.
+        in the file, as a picture of its own ("adaptive"). Its corners are vertices always. A
+        picture that fits one tile has none.
     seed : int
         Start of the random thresholds.
     threads : int, optional
