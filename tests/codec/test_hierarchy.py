@@ -13,7 +13,7 @@ from tests.strategies import meshes
 from tests.surfaces import scattered
 from vmesh.arrays import Int32Array
 from vmesh.codec.hierarchy import MAX_TRIANGLES, Hierarchy, build_hierarchy
-from vmesh.encoder.pipeline import propose
+from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh

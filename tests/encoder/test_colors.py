@@ -10,7 +10,8 @@ from tests.pictures import disc, noise
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.encoder.colors import fit_colors, fit_components
 from vmesh.encoder.image import with_hidden_colors_replaced
-from vmesh.encoder.pipeline import encode, propose
+from vmesh.encoder.pipeline import encode
+from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
 from vmesh.kernels.delaunay import delaunay
 

@@ -9,8 +9,10 @@ from tests.pictures import drawn, noise, psnr
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice
+from vmesh.encoder.code_order import code_order
 from vmesh.encoder.colors import NormalEquations, fit_colors
-from vmesh.encoder.pipeline import encode, propose
+from vmesh.encoder.pipeline import encode
+from vmesh.encoder.proposals import propose
 from vmesh.encoder.quantization import quantize
 from vmesh.encoder.settings import Settings
 from vmesh.kernels.delaunay import delaunay
@@ -57,7 +59,7 @@ def test_without_a_price_the_error_is_no_larger_than_that_of_rounding(
     image = noise(30, 36, n_components)
     vertices, _, colors, equations = fitted(image, 80)
     lattice = ColorLattice.uniform(n_components, step)
-    levels = quantize(equations, colors, vertices, lattice, 0.0)
+    levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, 0.0)
     rounded = lattice.levels_from_colors(np.rint(colors))
     lowest, highest = lattice.level_bounds()
     assert levels.dtype == np.int32
@@ -78,7 +80,7 @@ def test_a_higher_price_takes_fewer_bytes_and_leaves_more_error(
     lattice = ColorLattice.uniform(n_components, 8)
     sizes, reached = [], []
     for price in (0.0, 100.0, 1000.0, 10_000.0, 1e6):
-        levels = quantize(equations, colors, vertices, lattice, price)
+        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, price)
         mesh = Mesh(100, 80, vertices, triangles, levels, lattice, subdivision=1)
         sizes.append(len(dumps(mesh)))
         reached.append(psnr(drawn(mesh), image))
@@ -92,7 +94,7 @@ def test_a_fair_price_is_better_than_a_coarser_step(cup: UInt8Array) -> None:
 
     def size_and_psnr(step: int, price: float) -> tuple[int, float]:
         lattice = ColorLattice.uniform(3, step)
-        levels = quantize(equations, colors, vertices, lattice, price)
+        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, price)
         mesh = Mesh(100, 80, vertices, triangles, levels, lattice, subdivision=1)
         return len(dumps(mesh)), psnr(drawn(mesh), cup)
 

@@ -15,7 +15,7 @@ from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
 from tests.surfaces import check_mesh, check_surface, measure_all
 from vmesh.arrays import Int32Array, UInt8Array
-from vmesh.encoder.pipeline import propose
+from vmesh.encoder.proposals import propose
 from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.settings import Settings
 

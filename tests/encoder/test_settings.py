@@ -39,6 +39,8 @@ from vmesh.encoder.settings import DEFAULT_EFFORT, Settings
         {"effort": 10},
         {"color_step": 0},
         {"color_step": 65_536},
+        {"tile": 31},
+        {"tile": 2049},
         {"seed": -1},
     ],
 )
@@ -66,6 +68,8 @@ def test_a_setting_out_of_range_is_refused(setting: dict[str, Any]) -> None:
         {"effort": 9},
         {"color_step": 1},
         {"color_step": 255},
+        {"tile": 32},
+        {"tile": 2048},
         {"seed": 2**31},
         {"method": "blue-noise", "sampler": "channels", "diffusion": "ostromoukhov"},
         {"method": "blue-noise", "colors": "sampled"},
@@ -99,21 +103,26 @@ def test_blue_noise_has_no_rate_control(goal: str) -> None:
         Settings(**{"method": "blue-noise", goal: GOALS[goal]})
 
 
+def test_blue_noise_has_no_tiles() -> None:
+    with pytest.raises(ValueError, match="expected method adaptive with tile, got blue-noise"):
+        Settings(method="blue-noise", tile=512)
+
+
 def test_the_adaptive_method_has_no_sampled_colors() -> None:
     with pytest.raises(ValueError, match="expected method blue-noise with sampled colors"):
         Settings(colors="sampled")
 
 
-@pytest.mark.parametrize("name", ["quality", "target_size", "vertices", "effort", "seed"])
+@pytest.mark.parametrize("name", ["quality", "target_size", "vertices", "effort", "tile", "seed"])
 def test_a_fraction_is_no_whole_number(name: str) -> None:
     setting: dict[str, Any] = {name: 7.5}
     with pytest.raises(TypeError):
         Settings(**setting)
 
 
-@pytest.mark.parametrize("name", ["quality", "target_size", "vertices", "effort", "seed"])
+@pytest.mark.parametrize("name", ["quality", "target_size", "vertices", "effort", "tile", "seed"])
 def test_whole_numbers_of_numpy_are_taken(name: str) -> None:
-    setting: dict[str, Any] = {name: np.int64(7)}
+    setting: dict[str, Any] = {name: np.int64(40 if name == "tile" else 7)}
     assert type(getattr(Settings(**setting), name)) is int
 
 
@@ -133,3 +142,8 @@ def test_the_number_of_vertices_follows_from_vertices_or_density() -> None:
     assert Settings(vertices=77).n_vertices(100, 50) == 77
     assert Settings(density=0.02).n_vertices(100, 50) == 100
     assert Settings(density=0.02).n_vertices(2, 2) == 4
+
+
+def test_another_goal_takes_the_place_of_the_one_that_was_given() -> None:
+    changed = Settings(quality=3, effort=2).with_goal(vertices=50)
+    assert changed == Settings(vertices=50, effort=2)

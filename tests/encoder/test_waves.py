@@ -58,12 +58,12 @@ def test_results_come_in_the_order_of_the_arguments(n_threads: int) -> None:
         return i * i
 
     with workers(n_threads) as run:
-        assert run(work, range(5)) == [0, 1, 4, 9, 16]
+        assert list(run(work, range(5))) == [0, 1, 4, 9, 16]
 
 
 def test_an_error_in_a_job_reaches_the_caller() -> None:
     with workers(2) as run, pytest.raises(ZeroDivisionError):
-        run(lambda i: 1 // i, [1, 0])
+        list(run(lambda i: 1 // i, [1, 0]))
 
 
 def test_a_mesh_does_not_depend_on_the_number_of_threads(chelsea: UInt8Array) -> None:

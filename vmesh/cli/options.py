@@ -14,6 +14,8 @@ from vmesh.encoder.settings import (
     MAX_COLOR_STEP,
     MAX_EFFORT,
     MAX_QUALITY,
+    MAX_TILE,
+    MIN_TILE,
     ColorMode,
     Diffusion,
     Method,
@@ -96,6 +98,12 @@ _MESH_OPTIONS = (
         "--color-step",
         type=click.IntRange(1, MAX_COLOR_STEP),
         help="Rounding of the vertex colours, 1 for none; follows from the error unless given.",
+    ),
+    click.option(
+        "--tile",
+        type=click.IntRange(MIN_TILE, MAX_TILE),
+        metavar="PIXELS",
+        help=f"Side of tiles that are encoded each for itself, {MIN_TILE} to {MAX_TILE}.",
     ),
     click.option(
         "--seed", type=click.IntRange(0), default=0, show_default=True, help="Random seed."

@@ -11,10 +11,12 @@ import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
 from vmesh.color_lattice import ColorLattice
+from vmesh.encoder.code_order import code_order
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.image import depth_of, peak_of
 from vmesh.encoder.quantization import quantize
 from vmesh.encoder.sampling import Samples
+from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
@@ -33,9 +35,13 @@ _PRICE: Final = 0.045
 class Draft(Protocol):
     """A mesh of a picture that is not final yet."""
 
-    n_vertices: int
-    error: float
-    """Squared error with fitted colours that are not rounded, summed over all samples."""
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices."""
+
+    @property
+    def error(self) -> float:
+        """Squared error with fitted colours that are not rounded, summed over all samples."""
 
     def resize(self, n_vertices: int) -> None:
         """Change the number of vertices, as far as the picture allows."""
@@ -94,11 +100,14 @@ class Finisher:
     metadata : Metadata
     color_step : int or None
         Step of the luma lattice; None lets the error decide.
+    grid : Grid, optional
+        The tiles that files of the meshes are made of.
     """
 
     image: SampleArray
     metadata: Metadata
     color_step: int | None
+    grid: Grid | None = None
 
     def finish(self, draft: Draft) -> Mesh:
         """Mesh of a draft: colours fitted and rounded to levels that are worth their bits."""
@@ -112,5 +121,16 @@ class Finisher:
         lattice = ColorLattice.uniform(n_components, step, depth_of(self.image))
         # Who asks for no rounding wants the fitted colours as they are.
         price = 0.0 if self.color_step == 1 else price_of(draft)
-        levels = quantize(equations, colors, vertices, lattice, price)
-        return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, self.metadata)
+        hierarchy = code_order(vertices, self.grid, UNIT)
+        levels = quantize(equations, colors, hierarchy, lattice, price)
+        return Mesh(
+            width,
+            height,
+            vertices,
+            triangles,
+            levels,
+            lattice,
+            SUBDIVISION,
+            self.metadata,
+            self.grid.side if self.grid else None,
+        )

@@ -8,10 +8,9 @@ import numpy as np
 from scipy.sparse import coo_array
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array
-from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
+from vmesh.codec.hierarchy import Hierarchy
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import NormalEquations
-from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.quantization import N_SPREADS, TABLE_SIZE, descend, predict
 
 _MAX_SWEEPS: Final = 8
@@ -23,7 +22,7 @@ _PRIOR: Final = 8.0
 def quantize(
     equations: list[NormalEquations],
     colors: Float64Array,
-    vertices: Int32Array,
+    hierarchy: Hierarchy,
     lattice: ColorLattice,
     price: float,
 ) -> Int32Array:
@@ -35,8 +34,8 @@ def quantize(
         The squared error as a function of the colours, for each sample component.
     colors : ndarray
         Shape (n, c), float64: the fitted colours.
-    vertices : ndarray
-        Shape (n, 2), int32, in raster order.
+    hierarchy : Hierarchy
+        The order in which a file holds the levels.
     lattice : ColorLattice
     price : float
         Squared error that a bit is worth; 0 looks at the error alone.
@@ -46,17 +45,16 @@ def quantize(
     ndarray
         Shape (n, c), int32.
     """
-    hierarchy = build_hierarchy(vertices, delaunay(vertices))
     lowest, highest = lattice.level_bounds()
     steps = _level_steps(lattice)
     levels = np.rint(np.linalg.solve(steps.T, colors.T).T).astype(np.int64)
     levels = np.clip(levels, lowest, highest)
-    form = _quadratic_form(equations, len(vertices))
+    form = _quadratic_form(equations, len(colors))
     children = _children(hierarchy)
     n_components = lattice.n_components
     shares = np.zeros((len(hierarchy.parents), n_components))
-    means = np.zeros((len(vertices), n_components))
-    spreads = np.zeros((len(vertices), n_components), dtype=np.int64)
+    means = np.zeros((len(colors), n_components))
+    spreads = np.zeros((len(colors), n_components), dtype=np.int64)
     for _ in range(_MAX_SWEEPS):
         predict(*hierarchy, levels, shares, means, spreads)
         table = _bit_table(levels[hierarchy.order], means, spreads)

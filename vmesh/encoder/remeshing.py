@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -98,7 +98,7 @@ class Remesher:
         self._room = self._make_room()
         colors = sample_colors(self._picture, vertices, UNIT)
         self._surface = _open_surface(vertices.astype(np.int64), colors, delaunay(vertices), 0)
-        self.n_vertices = len(vertices)
+        self.n_proposed = self.n_vertices = len(vertices)
         self.error = 0.0
         self._refit()
 
@@ -273,11 +273,16 @@ class Remesher:
         """Move all vertices that something changed around to better places."""
         surface, picture = self._surface, self._picture
         for groups in waves(surface.points, surface.origin.reshape(-1, 3)):
-            self._run(lambda group: relocate(surface, picture, self._make_room(), group), groups)
+            self._do(lambda group: relocate(surface, picture, self._make_room(), group), groups)
 
     def _share_out(self, n_items: int, job: Callable[[Room, int, int], None]) -> None:
         """Do a job for all items; it is called with each share of them, and room of its own."""
-        self._run(lambda share: job(self._make_room(), *share), shares(n_items))
+        self._do(lambda share: job(self._make_room(), *share), shares(n_items))
+
+    def _do(self, job: Callable[[Any], object], arguments: Iterable[Any]) -> None:
+        """Do jobs that do not depend on each other."""
+        for _ in self._run(job, arguments):
+            pass
 
     def _make_room(self) -> Room:
         return make_room(self._picture.shape[0], self._picture.shape[2])

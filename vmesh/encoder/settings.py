@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import index
-from typing import Final, Literal, get_args
+from typing import Any, Final, Literal, get_args
 
-from vmesh.limits import MAX_DEPTH
+from vmesh.limits import MAX_DEPTH, MAX_TILE_SIDE
 
 Method = Literal["adaptive", "blue-noise"]
 Sampler = Literal["multiclass", "channels"]
@@ -16,6 +16,8 @@ ColorMode = Literal["fitted", "sampled"]
 MAX_QUALITY: Final = 100
 MAX_EFFORT: Final = 9
 MAX_COLOR_STEP: Final = (1 << MAX_DEPTH) - 1
+MIN_TILE: Final = 32
+MAX_TILE: Final = MAX_TILE_SIDE >> 1  # a pixel is two lattice units wide
 DEFAULT_QUALITY: Final = 75
 DEFAULT_EFFORT: Final = 5
 
@@ -25,7 +27,7 @@ _CHOICES: Final = {
     "diffusion": get_args(Diffusion),
     "colors": get_args(ColorMode),
 }
-_GOALS: Final = ("quality", "target_size", "target_psnr", "vertices", "density")
+GOALS: Final = ("quality", "target_size", "target_psnr", "vertices", "density")
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,10 @@ class Settings:
     color_step : int, optional
         Step of the luma lattice in sample units, 1 (no rounding) to the largest sample; the other
         components' steps follow from it. It follows from the error unless given.
+    tile : int, optional
+        Side in pixels, 32 to 2048, of tiles that the mesh is made of: each is worked on, and held
+        in the file, as a picture of its own ("adaptive"). Its corners are vertices always. A
+        picture that fits one tile has none.
     seed : int
         Start of the random thresholds.
     threads : int, optional
@@ -84,6 +90,7 @@ class Settings:
     diffusion: Diffusion = "zhou-fang"
     colors: ColorMode = "fitted"
     color_step: int | None = None
+    tile: int | None = None
     seed: int = 0
     threads: int | None = None
 
@@ -100,6 +107,7 @@ class Settings:
             "vertices",
             "effort",
             "color_step",
+            "tile",
             "seed",
             "threads",
         ):
@@ -129,17 +137,23 @@ class Settings:
             raise ValueError(
                 f"expected a color step of 1 to {MAX_COLOR_STEP}, got {self.color_step}"
             )
+        if self.tile is not None and not MIN_TILE <= self.tile <= MAX_TILE:
+            raise ValueError(
+                f"expected a tile of {MIN_TILE} to {MAX_TILE} pixels a side, got {self.tile}"
+            )
         if self.threads is not None and self.threads < 1:
             raise ValueError(f"expected 1 thread or more, got {self.threads}")
         if self.seed < 0:
             raise ValueError(f"expected a seed of 0 or more, got {self.seed}")
 
     def _check_goals(self) -> None:
-        given = [name for name in _GOALS if getattr(self, name) is not None]
+        given = [name for name in GOALS if getattr(self, name) is not None]
         if len(given) > 1:
             raise ValueError(f"expected one of {' and '.join(given)}, not both")
         if self.method == "blue-noise" and given and given[0] not in ("vertices", "density"):
             raise ValueError(f"expected method adaptive with {given[0]}, got blue-noise")
+        if self.method == "blue-noise" and self.tile is not None:
+            raise ValueError("expected method adaptive with tile, got blue-noise")
         if self.method == "adaptive" and self.colors == "sampled":
             raise ValueError("expected method blue-noise with sampled colors, got adaptive")
 
@@ -148,3 +162,8 @@ class Settings:
         if self.density is not None:
             return max(4, round(self.density * width * height))
         return self.vertices
+
+    def with_goal(self, **goal: float) -> Settings:
+        """The settings with another goal, or none."""
+        changes: dict[str, Any] = {**dict.fromkeys(GOALS), **goal}
+        return replace(self, **changes)

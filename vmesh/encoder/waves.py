@@ -21,8 +21,8 @@ _BAND: Final = 128  # rows of half pixels; not to be changed with the number of 
 _SHARE: Final = 4096  # items of a job that needs no order
 _MAX_THREADS: Final = 16
 
-Run = Callable[[Callable[..., Any], Iterable[Any]], list[Any]]
-"""Calls a function with each of some arguments; the results, in their order."""
+Run = Callable[[Callable[..., Any], Iterable[Any]], Iterator[Any]]
+"""Calls a function with each of some arguments; the results in their order, as they come."""
 
 
 @contextmanager
@@ -33,13 +33,17 @@ def workers(n_threads: int | None) -> Iterator[Run]:
     if n_threads == 1:
         yield run_here
         return
-    with ThreadPoolExecutor(n_threads) as pool:
-        yield lambda function, arguments: list(pool.map(function, arguments))
+    pool = ThreadPoolExecutor(n_threads)
+    try:
+        yield pool.map
+    finally:
+        # After an error what has not begun is not worth waiting for.
+        pool.shutdown(cancel_futures=True)
 
 
-def run_here(function: Callable[..., Any], arguments: Iterable[Any]) -> list[Any]:
+def run_here(function: Callable[..., Any], arguments: Iterable[Any]) -> Iterator[Any]:
     """Call a function with each of some arguments, one after the other."""
-    return [function(argument) for argument in arguments]
+    return map(function, arguments)
 
 
 def shares(n_items: int) -> list[tuple[int, int]]:

@@ -8,7 +8,8 @@ from functools import cached_property
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.image import as_image
-from vmesh.encoder.pipeline import encode, propose
+from vmesh.encoder.pipeline import encode
+from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
 from vmesh.formats.heat import error_levels
 from vmesh.formats.picture import flatten

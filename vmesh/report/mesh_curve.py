@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Final
 
 from vmesh.arrays import SampleArray, UInt8Array
@@ -38,16 +38,9 @@ def mesh_curve(
     points = {}
     for share in SHARES:
         wanted = max(4, min(round(share * mesh.n_vertices), mesh.width * mesh.height))
-        chosen = replace(without_goal(settings), vertices=wanted)
+        chosen = settings.with_goal(vertices=wanted)
         other = mesh if share == 1 else encode(array, progress=progress, **asdict(chosen))
         size = len(dumps(other.replaced(metadata=Metadata())))
         pixels = flatten(render(other, limits=limits), other.depth)
         points[size] = Point(size, psnr(original, pixels))
     return Curve(_CODEC, tuple(points[size] for size in sorted(points)))
-
-
-def without_goal(settings: Settings) -> Settings:
-    """The settings but for what the mesh has to meet."""
-    return replace(
-        settings, quality=None, target_size=None, target_psnr=None, vertices=None, density=None
-    )

@@ -24,7 +24,7 @@ from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import compare
 from vmesh.progress import Progress, silent
-from vmesh.report.mesh_curve import SHARES, mesh_curve, without_goal
+from vmesh.report.mesh_curve import SHARES, mesh_curve
 from vmesh.report.rivals import RIVALS, Curve
 
 _SAMPLE_SIDE: Final = 32
@@ -136,7 +136,7 @@ def count_study_steps(settings: Settings) -> int:
 def _compile(array: SampleArray, settings: Settings, limits: Limits) -> None:
     """Run every stage on a corner of the picture: compiling, once, is no part of its timings."""
     corner = array[:_SAMPLE_SIDE, :_SAMPLE_SIDE]
-    mesh = encode(corner, **asdict(without_goal(settings)))
+    mesh = encode(corner, **asdict(settings.with_goal()))
     render(loads(dumps(mesh), limits=limits), limits=limits)
 
 

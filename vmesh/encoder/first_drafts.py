@@ -1,0 +1,158 @@
+"""First drafts: what is sampled of a picture or of its tiles, as far as its goal allows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from vmesh.arrays import SampleArray
+from vmesh.encoder.drafts import SampledDraft, price_of
+from vmesh.encoder.image import peak_of
+from vmesh.encoder.proposals import propose
+from vmesh.encoder.rate_control import guess_vertices, price_of_quality
+from vmesh.encoder.remeshing import Effort, Remesher
+from vmesh.encoder.sampling import Samples
+from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
+from vmesh.encoder.tiling import TiledRemesher, TiledSamples, crop
+from vmesh.encoder.waves import Run, run_here
+from vmesh.grid import Grid, Tile
+
+# What each effort from 2 on buys.
+_EFFORTS: Final = {
+    2: Effort(density=0.04, max_rounds=1, least_gain=0.0, share_decay=1.0),
+    3: Effort(density=0.05, max_rounds=2, least_gain=0.0, share_decay=0.7),
+    4: Effort(density=0.06, max_rounds=3, least_gain=0.0, share_decay=0.8),
+    5: Effort(density=0.045, max_rounds=16, least_gain=0.06, share_decay=0.85),
+    6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
+    7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
+    8: Effort(density=0.25, max_rounds=32, least_gain=0.004, share_decay=0.96),
+    9: Effort(density=0.25, max_rounds=64, least_gain=0.0, share_decay=0.98),
+}
+# Thinning starts from at least so many times the vertices wanted.
+_LEAST_CHOICE: Final = 3
+# A vertex stays while its removal costs more than this many bits: what it takes, and what it will
+# gain in its final place.
+_VERTEX_BITS: Final = 20.0
+# The error before refinement, for that after it.
+_REFINEMENT_GAIN: Final = 1.6
+
+
+def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
+    """Vertices where they are sampled, as many as the settings ask for."""
+    height, width = image.shape[:2]
+
+    def take(n_vertices: int) -> Samples:
+        _, samples = propose(image, settings.with_goal(vertices=n_vertices))
+        return samples
+
+    wanted = _wanted_vertices(settings, width, height)
+    draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
+    if wanted is None and settings.target_psnr is None:
+        price = price_of_quality(_quality(settings), peak_of(image))
+        for _ in range(2):
+            # The price falls with about the 1.6th power of the number of vertices.
+            factor = (price_of(draft) / price) ** (1 / 1.6)
+            draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
+    return draft
+
+
+def sampled_tiles(image: SampleArray, grid: Grid, settings: Settings, run: Run) -> TiledSamples:
+    """The same for the tiles of a picture."""
+    wanted = _wanted_vertices(settings, grid.width, grid.height)
+    if wanted is not None:
+        share = wanted / (grid.width * grid.height)
+        settings = settings.with_goal(density=min(1.0, share))
+    parts = run(lambda tile: sampled_draft(crop(image, tile), settings), grid.tiles())
+    draft = TiledSamples(grid, list(parts), run)
+    if wanted is not None or settings.target_psnr is not None:
+        draft.balance()
+    if wanted is not None:
+        draft.resize(wanted)
+    return draft
+
+
+def thinned(
+    image: SampleArray, settings: Settings, report: Callable[[], None], run: Run
+) -> Remesher:
+    """The vertices of a dense sample that matter most."""
+    height, width = image.shape[:2]
+    wanted = _wanted_vertices(settings, width, height)
+    start = _start(width, height, settings)
+    if wanted is not None:
+        start = max(start, _LEAST_CHOICE * wanted)
+    while True:
+        start = max(4, min(start, width * height))
+        draft = _proposed(image, settings, start, run)
+        _thin(draft, settings, wanted, report)
+        if _had_choice(draft) or start >= width * height:
+            return draft
+        start = 2 * _LEAST_CHOICE * draft.n_vertices
+
+
+def thinned_tiles(
+    image: SampleArray, grid: Grid, settings: Settings, report: Callable[[], None], run: Run
+) -> TiledRemesher:
+    """The same for the tiles of a picture, all thinned alike."""
+
+    def proposed(job: tuple[Tile, int]) -> Remesher:
+        tile, start = job
+        return _proposed(crop(image, tile), settings, start, run_here)
+
+    tiles = list(grid.tiles())
+    starts = [_start(tile.width, tile.height, settings) for tile in tiles]
+    draft = TiledRemesher(grid, list(run(proposed, zip(tiles, starts, strict=True))), run)
+    while True:
+        _thin(draft, settings, _wanted_vertices(settings, grid.width, grid.height), report)
+        denser = {}
+        for i, (tile, part) in enumerate(zip(tiles, draft.parts, strict=True)):
+            n_pixels = tile.width * tile.height
+            if starts[i] < n_pixels and not _had_choice(part):
+                starts[i] = denser[i] = min(2 * _LEAST_CHOICE * part.n_vertices, n_pixels)
+        if not denser:
+            return draft
+        parts = run(proposed, [(tiles[i], start) for i, start in denser.items()])
+        draft.replace(dict(zip(denser, parts, strict=True)))
+
+
+def _start(width: int, height: int, settings: Settings) -> int:
+    """Number of vertices that thinning starts from."""
+    return max(4, round(_EFFORTS[settings.effort].density * width * height))
+
+
+def _proposed(image: SampleArray, settings: Settings, n_vertices: int, run: Run) -> Remesher:
+    """A dense sample of a picture."""
+    _, samples = propose(image, settings.with_goal(vertices=n_vertices))
+    return Remesher(image, samples.vertices(), _EFFORTS[settings.effort], run)
+
+
+def _had_choice(draft: Remesher) -> bool:
+    """Whether there was enough to choose from."""
+    return _LEAST_CHOICE * draft.n_vertices <= draft.n_proposed
+
+
+def _thin(
+    draft: Remesher | TiledRemesher,
+    settings: Settings,
+    wanted: int | None,
+    report: Callable[[], None],
+) -> None:
+    """Remove vertices down to the number wanted, or as many as the price or the error allows."""
+    if wanted is not None:
+        draft.thin(wanted, report)
+    elif settings.target_psnr is not None:
+        allowed = draft.n_samples * draft.peak**2 / 10.0 ** (settings.target_psnr / 10.0)
+        draft.thin(4, report, max_error=_REFINEMENT_GAIN * allowed)
+    else:
+        price = price_of_quality(_quality(settings), draft.peak)
+        draft.thin(4, report, max_cost=_VERTEX_BITS * price)
+
+
+def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:
+    """Number of vertices that the settings ask for, or that a file of their size may hold."""
+    if settings.target_size is not None:
+        return max(4, min(guess_vertices(settings.target_size), width * height))
+    return settings.n_vertices(width, height)
+
+
+def _quality(settings: Settings) -> int:
+    return DEFAULT_QUALITY if settings.quality is None else settings.quality

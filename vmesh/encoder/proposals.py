@@ -1,0 +1,37 @@
+"""Proposals: where the vertices of a mesh might be, sampled from what stands out in a picture."""
+
+from __future__ import annotations
+
+from vmesh.arrays import SampleArray, UInt16Array
+from vmesh.encoder.image import visible_planes
+from vmesh.encoder.salience import compute_salience
+from vmesh.encoder.sampling import Samples, sample
+from vmesh.encoder.settings import Settings
+
+
+def propose(image: SampleArray, settings: Settings) -> tuple[UInt16Array, Samples]:
+    """Salience of a picture and the points sampled from it, before any thinning.
+
+    Parameters
+    ----------
+    image : ndarray
+        Shape (h, w, c), uint8 or uint16.
+    settings : Settings
+        With a number of vertices or a density; otherwise gamma decides on the number of points.
+
+    Returns
+    -------
+    salience : ndarray
+        Shape (c, h, w), uint16, as :func:`compute_salience` gives it.
+    samples : Samples
+    """
+    height, width = image.shape[:2]
+    salience = compute_salience(visible_planes(image), settings.gamma)
+    samples = sample(
+        salience,
+        n_points=settings.n_vertices(width, height),
+        sampler=settings.sampler,
+        diffusion=settings.diffusion,
+        seed=settings.seed,
+    )
+    return salience, samples
