@@ -56,7 +56,8 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 @click.option(
     "--allow-partial",
     is_flag=True,
-    help="Draw what there is of a file that was cut off, if at least its positions are there.",
+    help="Draw what there is of a file that was cut off, if at least its positions are there, or "
+    "of one in tiles, if one of them is whole.",
 )
 @limit_options
 @quiet_option
