@@ -134,7 +134,7 @@ class LevelReader {
   }
 }
 
-/** Contexts of the bits in unary: for each spread MOST_UNARY, of which the last share their odds. */
+/** Contexts of the bits in unary: for each spread MOST_UNARY, the last ones with the same odds. */
 function sizeContexts(moreThan) {
   const columns = Array.from({ length: MOST_UNARY }, (_, size) => moreThan[Math.min(size, 2)]);
   const odds = moreThan[0].map((_, spread) => columns.map((column) => 2048 * column[spread]));
