@@ -89,7 +89,9 @@ def test_a_page_without_webgl_draws_triangles_anew_when_it_enlarges(
     assert psnr(pixels_of(stage)[:, 50:950], enlarged) > 55
 
 
-@pytest.mark.parametrize("name", ["grey", "12-bits-grey", "16-bits-extremes", "rgba", "one-pixel"])
+@pytest.mark.parametrize(
+    "name", ["grey", "12-bits-grey", "16-bits-extremes", "rgba", "one-pixel", "tiles"]
+)
 @pytest.mark.parametrize("has_webgl", [True, False])
 def test_samples_of_all_kinds_are_shown(
     page: playwright.Page, tmp_path: Path, name: str, has_webgl: bool

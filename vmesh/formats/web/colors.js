@@ -134,13 +134,10 @@ class LevelReader {
   }
 }
 
-/** Contexts of the bits in unary: for each spread MOST_UNARY of them. */
-function sizeContexts([first, second, others]) {
-  const odds = first.map((_, spread) => {
-    const row = new Array(MOST_UNARY).fill(2048 * others[spread]);
-    row.splice(0, 2, 2048 * first[spread], 2048 * second[spread]);
-    return row;
-  });
+/** Contexts of the bits in unary: for each spread MOST_UNARY, the last ones with the same odds. */
+function sizeContexts(moreThan) {
+  const columns = Array.from({ length: MOST_UNARY }, (_, size) => moreThan[Math.min(size, 2)]);
+  const odds = moreThan[0].map((_, spread) => columns.map((column) => 2048 * column[spread]));
   return Contexts.preset(odds.flat());
 }
 

@@ -1,72 +1,18 @@
-/** Signature, header and chunks of a file: sections 3 and 4 of the specification. */
+/** Signature, header, chunks and tiles of a file: sections 3 and 4 of the specification. */
 
-import { VmeshError, check } from "./errors.js";
+import { check } from "./errors.js";
+import { Reader } from "./reader.js";
 
 const SIGNATURE = [0x8b, 0x56, 0x4d, 0x0d, 0x0a];
 const MAJOR_VERSION = 1;
 /** Chunks of these tags occur once at most. */
 export const METADATA_TAGS = "iex";
 const LEVELS_PER_BYTE = 5700;
-
-const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
-  let crc = byte;
-  for (let bit = 0; bit < 8; bit++) crc = crc & 1 ? (crc >>> 1) ^ 0xedb88320 : crc >>> 1;
-  return crc;
-});
-
-function crc32(bytes) {
-  let crc = 0xffffffff;
-  for (const byte of bytes) crc = CRC_TABLE[(crc ^ byte) & 255] ^ (crc >>> 8);
-  return ~crc >>> 0;
-}
-
-/** Reads the fields of a file one after the other; what is missing is "truncated". */
-class Reader {
-  constructor(bytes) {
-    this.bytes = bytes;
-    this.position = 0;
-  }
-
-  atEnd() {
-    return this.position === this.bytes.length;
-  }
-
-  take(length) {
-    const end = this.position + length;
-    check(end <= this.bytes.length, "truncated");
-    const taken = this.bytes.subarray(this.position, end);
-    this.position = end;
-    return taken;
-  }
-
-  byte() {
-    return this.take(1)[0];
-  }
-
-  /** A number below 2**31 in its shortest form; `code` is the error of any other. */
-  varint(code) {
-    let number = 0;
-    for (let i = 0; i < 5; i++) {
-      const byte = this.byte();
-      number += (byte % 128) * 2 ** (7 * i);
-      if (byte < 128) {
-        check(number < 2 ** 31 && (byte > 0 || i === 0), code);
-        return number;
-      }
-    }
-    throw new VmeshError(code);
-  }
-
-  /** Reads the CRC-32 of the bytes from `start` to here. */
-  checksum(start) {
-    const covered = this.bytes.subarray(start, this.position);
-    const [b0, b1, b2, b3] = this.take(4);
-    const stored = (b0 | (b1 << 8) | (b2 << 16) | (b3 << 24)) >>> 0;
-    check(stored === crc32(covered), "checksum");
-  }
-}
+const MOST_TILE_SIDE = 4096;
 
 /**
+ * Of a file, or of a tile of it.
+ *
  * @typedef {object} Header
  * @property {number} width canvas in pixels
  * @property {number} height
@@ -96,51 +42,114 @@ function readHeader(reader) {
   const subdivision = (format >> 2) & 15;
   const connectivity = format >> 6;
   const depth = 8 + (components >> 2);
-  const farX = width * 2 ** subdivision;
-  const farY = height * 2 ** subdivision;
   check(1 <= width && width <= 65535 && 1 <= height && height <= 65535, "header");
-  check(subdivision <= 8 && Math.max(farX, farY) <= 2 ** 19, "header");
+  check(subdivision <= 8 && Math.max(width, height) * 2 ** subdivision <= 2 ** 19, "header");
   check(nComponents !== 2 && connectivity !== 3, "header");
-  check(4 <= nVertices && nVertices <= (farX + 1) * (farY + 1), "header");
   check(!isDeep || (9 <= depth && depth <= 16), "header");
   check(steps.every((step) => 1 <= step && step < 2 ** depth), "header");
-  return { width, height, subdivision, connectivity, nVertices, steps, depth, farX, farY };
+  return sized({ subdivision, connectivity, steps, depth }, width, height, nVertices, "header");
 }
 
-/** All chunks; the last one is `M`, with which the file must end. */
+/** A header with a size and a number of vertices that fits it. */
+function sized(header, width, height, nVertices, code) {
+  const farX = width * 2 ** header.subdivision;
+  const farY = height * 2 ** header.subdivision;
+  check(4 <= nVertices && nVertices <= (farX + 1) * (farY + 1), code);
+  return { ...header, width, height, nVertices, farX, farY };
+}
+
+/** The next chunk. A letter that `allowed` does not match is refused after all else. */
+function readChunk(reader, allowed) {
+  const start = reader.position;
+  const tag = String.fromCharCode(reader.byte());
+  check(/^[A-Za-z]$/.test(tag), "chunk");
+  const content = reader.take(reader.varint("chunk"));
+  reader.checksum(start);
+  check(allowed.test(tag), "chunk");
+  return { tag, content };
+}
+
+/** The chunks up to and including `M` or `G`. */
 function readChunks(reader) {
   const chunks = [];
-  let tag;
+  let chunk;
   do {
-    const start = reader.position;
-    tag = String.fromCharCode(reader.byte());
-    check(/^[A-Za-z]$/.test(tag), "chunk");
-    const content = reader.take(reader.varint("chunk"));
-    reader.checksum(start);
-    check(tag === "M" || /[a-z]/.test(tag), "chunk");
-    check(!METADATA_TAGS.includes(tag) || chunks.every((chunk) => chunk.tag !== tag), "chunk");
-    chunks.push({ tag, content });
-  } while (tag !== "M");
-  check(reader.atEnd(), "trailing");
+    chunk = readChunk(reader, /[MGa-z]/);
+    const { tag } = chunk;
+    check(!METADATA_TAGS.includes(tag) || chunks.every((other) => other.tag !== tag), "chunk");
+    chunks.push(chunk);
+  } while (/[a-z]/.test(chunk.tag));
   return chunks;
 }
 
 /**
+ * What is coded as one mesh: all, or a tile.
+ *
+ * @typedef {object} Part
+ * @property {Header} header
+ * @property {Uint8Array} content positions, colours and triangles; shares memory with the file
+ * @property {number} x its left side in lattice units
+ * @property {number} y its upper side
+ */
+
+/** @returns {Part[]} the tiles that the content of `G` stands for, from the chunks that follow */
+function readTiles(reader, header, content, limits) {
+  const grid = new Reader(content, "tiles");
+  const side = grid.varint("tiles");
+  check(grid.atEnd() && 1 <= side && side * 2 ** header.subdivision <= MOST_TILE_SIDE, "tiles");
+  const nAcross = Math.ceil(header.width / side);
+  const nDown = Math.ceil(header.height / side);
+  check((nAcross + 1) * (nDown + 1) <= header.nVertices, "tiles");
+  check(nAcross * nDown <= limits.tiles, "limit");
+  const contents = Array.from({ length: nAcross * nDown }, () => readChunk(reader, /T/).content);
+  check(reader.atEnd(), "trailing");
+  return contents.map((own, i) => {
+    return openTile(header, side, side * (i % nAcross), side * Math.floor(i / nAcross), own);
+  });
+}
+
+/** The tile at a place in pixels. */
+function openTile(file, side, left, top, bytes) {
+  const width = Math.min(side, file.width - left);
+  const height = Math.min(side, file.height - top);
+  const reader = new Reader(bytes, "tiles");
+  const header = sized(file, width, height, reader.varint("tiles"), "tiles");
+  const content = reader.rest();
+  check(isPossible(header, content), "tiles");
+  return { header, content, x: left * 2 ** file.subdivision, y: top * 2 ** file.subdivision };
+}
+
+/** @returns {Part[]} */
+function readWhole(reader, header, content) {
+  check(reader.atEnd(), "trailing");
+  check(isPossible(header, content), "header");
+  return [{ header, content, x: 0, y: 0 }];
+}
+
+/** Whether so many bytes may hold so many levels. */
+function isPossible({ nVertices, steps }, content) {
+  return nVertices * steps.length <= LEVELS_PER_BYTE * (content.length + 1);
+}
+
+/**
  * @param {Uint8Array} bytes a file
- * @param {{pixels: number, vertices: number, verticesPerByte: number}} limits
- * @returns {{header: Header, content: Uint8Array, chunks: {tag: string, content: Uint8Array}[]}}
- *   `content` is that of the chunk `M`; it and the others share memory with `bytes`
+ * @param {typeof import("./limits.js").DEFAULT_LIMITS} limits
+ * @returns {{header: Header, isTiled: boolean, parts: Part[],
+ *   chunks: {tag: string, content: Uint8Array}[]}} `chunks` are those that are not of the mesh
  */
 export function readFile(bytes, limits) {
-  const reader = new Reader(bytes);
+  const reader = new Reader(bytes, "truncated");
   const header = readHeader(reader);
   check(header.width * header.height <= limits.pixels, "limit");
   check(header.nVertices <= limits.vertices, "limit");
 
   const chunks = readChunks(reader);
-  const { content } = chunks.pop();
-  const nLevels = header.nVertices * header.steps.length;
-  check(nLevels <= LEVELS_PER_BYTE * (content.length + 1), "header");
-  check(header.nVertices <= 65536 + limits.verticesPerByte * content.length, "limit");
-  return { header, content, chunks };
+  const { tag, content } = chunks.pop();
+  const isTiled = tag === "G";
+  const parts = (isTiled ? readTiles : readWhole)(reader, header, content, limits);
+  // Tiles may have more vertices than the header says, until they are joined.
+  const nVertices = parts.reduce((sum, part) => sum + part.header.nVertices, 0);
+  const nBytes = parts.reduce((sum, part) => sum + part.content.length, 0);
+  check(nVertices <= Math.min(limits.vertices, 65536 + limits.verticesPerByte * nBytes), "limit");
+  return { header, isTiled, parts, chunks };
 }

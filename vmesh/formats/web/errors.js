@@ -7,6 +7,7 @@ const MEANINGS = {
   checksum: "a CRC-32 is wrong",
   chunk: "a chunk is not allowed",
   trailing: "bytes follow the mesh",
+  tiles: "a tile is out of range, or tiles do not fit each other",
   metadata: "a metadata chunk is not one complete zlib stream with content",
   positions: "the coded positions are invalid",
   geometry: "the triangles do not cover the canvas exactly once",

@@ -5,7 +5,7 @@
  */
 
 import { check } from "./errors.js";
-import { cross, sortedByEnds } from "./geometry.js";
+import { canonicalOrder, cross, nextOf, prevOf } from "./geometry.js";
 import { Contexts } from "./rangecoder.js";
 import { NO_TWIN } from "./subdivision.js";
 
@@ -142,26 +142,4 @@ function flip({ origin, twin }, e, f) {
 function pair(twin, e, f) {
   twin[e] = f;
   if (f !== NO_TWIN) twin[f] = e;
-}
-
-/** Three vertices for each triangle, from the vertices at which half-edges start. */
-function canonicalOrder(origin, nVertices) {
-  const starts = [];
-  origin.forEach((v, e) => {
-    if (v < origin[nextOf(e)] && v < origin[prevOf(e)]) starts.push(e);
-  });
-  const destOf = (e) => origin[nextOf(e)];
-  const triangles = new Int32Array(origin.length);
-  sortedByEnds(starts, (e) => origin[e], destOf, nVertices).forEach((e, t) => {
-    triangles.set([origin[e], destOf(e), origin[prevOf(e)]], 3 * t);
-  });
-  return triangles;
-}
-
-function nextOf(e) {
-  return e % 3 === 2 ? e - 2 : e + 1;
-}
-
-function prevOf(e) {
-  return e % 3 === 0 ? e + 2 : e - 1;
 }

@@ -83,3 +83,26 @@ function sortedBy(edges, keyOf, nKeys) {
   for (const e of edges) sorted[next[keyOf(e)]++] = e;
   return sorted;
 }
+
+/** Three vertices for each triangle, by their canonical order, of triangles in any other order. */
+export function canonicalOrder(origin, nVertices) {
+  const starts = [];
+  origin.forEach((v, e) => {
+    if (v < origin[nextOf(e)] && v < origin[prevOf(e)]) starts.push(e);
+  });
+  const destOf = (e) => origin[nextOf(e)];
+  const triangles = new Int32Array(origin.length);
+  sortedByEnds(starts, (e) => origin[e], destOf, nVertices).forEach((e, t) => {
+    triangles.set([origin[e], destOf(e), origin[prevOf(e)]], 3 * t);
+  });
+  return triangles;
+}
+
+/** The half-edge after e in its triangle: those of triangle t are 3 t, 3 t + 1 and 3 t + 2. */
+export function nextOf(e) {
+  return e % 3 === 2 ? e - 2 : e + 1;
+}
+
+export function prevOf(e) {
+  return e % 3 === 0 ? e + 2 : e - 1;
+}

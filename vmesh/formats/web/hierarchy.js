@@ -23,7 +23,7 @@ export function hierarchyOf(triangulation, sides) {
   const isTaken = new Uint8Array(sides.length);
   let left = order.map((_, v) => v);
   while (left.length > 4) {
-    for (const v of left) isTaken[v] = !isCorner(sides[v]) && mayBeTaken(triangulation, v, isTaken);
+    for (const v of left) isTaken[v] = mayBeTaken(triangulation, v, sides, isTaken);
     const layer = left.filter((v) => isTaken[v]);
     // The layer that is taken first comes last.
     order.set(layer, left.length - layer.length);
@@ -39,12 +39,9 @@ export function hierarchyOf(triangulation, sides) {
 }
 
 /** Whether a vertex has few enough triangles, and no neighbour of it has been taken. */
-function mayBeTaken(triangulation, v, isTaken) {
-  let nTriangles = 0;
-  for (const e of triangulation.edgesAround(v)) {
-    if (isTaken[triangulation.destOf(e)]) return false;
-    if (triangulation.hasTriangle(e)) nTriangles++;
-    if (nTriangles > MOST_TRIANGLES) return false;
-  }
-  return true;
+function mayBeTaken(triangulation, v, sides, isTaken) {
+  if (isCorner(sides[v])) return false;
+  const neighbours = triangulation.neighboursOf(v);
+  const most = sides[v] > 0 ? MOST_PARENTS : MOST_TRIANGLES;
+  return neighbours.length <= most && neighbours.every((other) => !isTaken[other]);
 }

@@ -1,7 +1,7 @@
 /** Listed triangles and the check of their geometry: sections 8.3 and 10 of the specification. */
 
 import { check } from "./errors.js";
-import { cross } from "./geometry.js";
+import { cross, nextOf } from "./geometry.js";
 import { Contexts } from "./rangecoder.js";
 
 const LONGEST_INDEX = 31;
@@ -81,7 +81,7 @@ function checkEdges(triangles, sides) {
   // Sorted, the two directions of an edge u-v with u < v are next to each other: even, then odd.
   const keys = new Float64Array(triangles.length);
   triangles.forEach((u, e) => {
-    const v = triangles[e % 3 === 2 ? e - 2 : e + 1];
+    const v = triangles[nextOf(e)];
     keys[e] = u < v ? 2 * (u * n + v) : 2 * (v * n + u) + 1;
   });
   keys.sort();

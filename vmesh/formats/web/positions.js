@@ -18,6 +18,12 @@ const SHARES = [
   [57344, 57344, 40960, 32768, 24576, 8192, 8192],
 ];
 
+/** For each logarithm of an area and each count below FEW, the odds for each middle. */
+const ODDS_OF_FEW = Array.from({ length: LONGEST_LOG_AREA + 1 }, (_, logArea) => {
+  const odds = (shares, middle) => (logArea < 2 ? ODDS_OF_SMALL_HALF : (shares[middle] ?? 0));
+  return SHARES.map((shares) => Array.from({ length: FEW }, (_, middle) => odds(shares, middle)));
+}).flat(2);
+
 /**
  * @param {import("./rangecoder.js").RangeDecoder} decoder
  * @param {number} nVertices
@@ -27,7 +33,8 @@ const SHARES = [
  */
 export function readPositions(decoder, nVertices, columns, rows) {
   decoder.part = "positions";
-  const counts = new CountReader(decoder);
+  const few = Contexts.preset(ODDS_OF_FEW);
+  const many = Contexts.even((MOST_BITS + 1) ** 2);
   const sites = new Float64Array(nVertices);
   let nFound = 0;
 
@@ -35,6 +42,20 @@ export function readPositions(decoder, nVertices, columns, rows) {
     const width = Math.min(x + (1 << across), columns) - x;
     const height = Math.min(y + (1 << down), rows) - y;
     return Math.max(0, width) * Math.max(0, height);
+  }
+
+  /** Reads how many of the vertices of a box are in its first half. */
+  function readFirst(count, logArea, low, high) {
+    for (let depth = 0; low < high; depth++) {
+      const middle = Math.floor((low + high) / 2);
+      const isMore =
+        count < FEW
+          ? decoder.bit(few, (logArea * FEW + count) * FEW + middle)
+          : decoder.bit(many, manyContext(count, depth));
+      if (isMore) low = middle + 1;
+      else high = middle;
+    }
+    return low;
   }
 
   /** Reads `count` vertices in the box at x, y with sides 2**across and 2**down. */
@@ -50,7 +71,7 @@ export function readPositions(decoder, nVertices, columns, rows) {
     else y2 += 1 << --down;
     const least = Math.max(0, count - room(x2, y2, across, down));
     const most = Math.min(count, room(x, y, across, down));
-    const first = counts.read(count, across + down, least, most);
+    const first = readFirst(count, across + down, least, most);
     visit(x, y, across, down, first);
     visit(x2, y2, across, down, count - first);
   }
@@ -73,42 +94,7 @@ function bitLength(number) {
   return 32 - Math.clz32(number);
 }
 
-/** Reads how many of the vertices of a box are in its first half. */
-class CountReader {
-  constructor(decoder) {
-    this.decoder = decoder;
-    this.few = fewContexts();
-    this.many = Contexts.even((MOST_BITS + 1) ** 2);
-  }
-
-  read(count, logArea, low, high) {
-    for (let depth = 0; low < high; depth++) {
-      const middle = Math.floor((low + high) / 2);
-      const isMore =
-        count < FEW
-          ? this.decoder.bit(this.few, (logArea * FEW + count) * FEW + middle)
-          : this.decoder.bit(this.many, manyContext(count, depth));
-      if (isMore) low = middle + 1;
-      else high = middle;
-    }
-    return low;
-  }
-}
-
 function manyContext(count, depth) {
   const log = bitLength(count) - 1;
   return Math.min(log, MOST_BITS) * (MOST_BITS + 1) + Math.min(depth, MOST_BITS);
-}
-
-/** Contexts for counts below FEW: a table as SHARES for each logarithm of an area. */
-function fewContexts() {
-  const odds = [];
-  for (let logArea = 0; logArea <= LONGEST_LOG_AREA; logArea++) {
-    for (const shares of SHARES) {
-      for (let middle = 0; middle < FEW; middle++) {
-        odds.push(logArea < 2 ? ODDS_OF_SMALL_HALF : (shares[middle] ?? 0));
-      }
-    }
-  }
-  return Contexts.preset(odds);
 }

@@ -1,5 +1,5 @@
 /**
- * Decoder and renderer of `.vmesh` files, version 1.0 (spec/vmesh.md). Written from the
+ * Decoder and renderer of `.vmesh` files, version 1.1 (spec/vmesh.md). Written from the
  * specification alone, without dependencies, for browsers and Node.
  */
 
@@ -14,6 +14,7 @@ import { checkGeometry, readTriangles } from "./list.js";
 import { readPositions } from "./positions.js";
 import { RangeDecoder } from "./rangecoder.js";
 import { render } from "./render.js";
+import { joinTiles } from "./tiles.js";
 
 export { DEFAULT_LIMITS, VmeshError, render };
 
@@ -47,13 +48,15 @@ const FLIPPED = 2;
  * @throws {VmeshError} if the file is invalid or exceeds a limit
  */
 export function decode(bytes, limits = {}) {
-  const { header, content, chunks } = readFile(bytes, { ...DEFAULT_LIMITS, ...limits });
+  const { header, isTiled, parts, chunks } = readFile(bytes, { ...DEFAULT_LIMITS, ...limits });
   const { width, height, subdivision, depth, steps } = header;
-  const mesh = readMesh(header, new RangeDecoder(content));
-  return { width, height, subdivision, depth, steps, ...mesh, chunks };
+  const meshes = parts.map((part) => readMesh(part.header, new RangeDecoder(part.content)));
+  const mesh = isTiled ? joinTiles(header, parts, meshes) : meshes[0];
+  const samples = samplesOf(mesh.levels, header);
+  return { width, height, subdivision, depth, steps, ...mesh, samples, chunks };
 }
 
-/** Decodes the content of the chunk `M`. */
+/** Decodes the mesh of a file or of a tile. */
 function readMesh(header, decoder) {
   const { connectivity, nVertices, farX, farY, steps } = header;
   const vertices = readPositions(decoder, nVertices, farX + 1, farY + 1);
@@ -72,5 +75,5 @@ function readMesh(header, decoder) {
     triangles = readFlips(decoder, vertices, halfEdges, luma);
   }
   decoder.end();
-  return { vertices, levels, samples: samplesOf(levels, header), triangles };
+  return { vertices, levels, triangles };
 }
