@@ -138,3 +138,9 @@ def test_the_same_positions_give_the_same_order(mesh: Mesh) -> None:
     assert np.array_equal(first.order, again.order)
     assert np.array_equal(first.starts, again.starts)
     assert np.array_equal(first.parents, again.parents)
+
+
+def test_vertices_without_the_corners_around_them_are_refused() -> None:
+    vertices = np.array([(0, 0), (4, 0), (2, 3), (0, 4)], dtype=np.int32)
+    with pytest.raises(ValueError, match="corners of the bounding box"):
+        build_hierarchy(vertices, delaunay(vertices))

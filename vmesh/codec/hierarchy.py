@@ -61,6 +61,9 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
         Shape (m, 3), int32: their canonical Delaunay triangles.
     """
     is_corner = find_corners(vertices, vertices.max(axis=0))
+    # Without them layers would be taken out until nothing is left to hold the rest.
+    if np.count_nonzero(is_corner) != 4:
+        raise ValueError("expected the corners of the bounding box among the vertices")
     taken, neighbours, counts, ends = peel(
         vertices.astype(np.int64),
         triangles.reshape(-1).copy(),

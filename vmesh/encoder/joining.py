@@ -67,7 +67,9 @@ def _put_on_lines(
     """
     far = np.array([grid.width, grid.height]) * UNIT
     lines = np.rint(points / (grid.side * UNIT)).astype(np.int32) * (grid.side * UNIT)
-    moves = (np.abs(points - lines) <= _NEAR) & (lines > 0) & (lines < far)
+    # The border of the canvas stays where it is, also where the last tiles are a pixel wide.
+    is_free = (lines > 0) & (lines < far) & (points < far)
+    moves = (np.abs(points - lines) <= _NEAR) & is_free
     while True:
         moved = np.where(moves, lines, points)
         corners = moved.astype(np.int64)[triangles]
