@@ -191,9 +191,10 @@ def test_coincident_points_are_refused(n: int) -> None:
             delaunay(twice)
 
 
-def test_the_in_circle_test_is_exact_for_the_largest_coordinates() -> None:
+# The largest, the largest whose squares are short in all cases, one in between, and a small one.
+@pytest.mark.parametrize("far", [MAX_LATTICE_SIDE, 23_170, 40_000, 20])
+def test_the_in_circle_test_is_exact(far: int) -> None:
     random = np.random.default_rng(13)
-    far = MAX_LATTICE_SIDE
     for i in range(20_000):
         points = random.integers(0, far + 1, (4, 2)).tolist()
         if i % 2:  # Nearly on one circle, or exactly: the corners of a square, nudged.
