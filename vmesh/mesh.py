@@ -200,10 +200,7 @@ class Mesh:
 
     def doubled_areas(self) -> Int64Array:
         """Twice the signed area of every triangle in square lattice units, shape (m,), int64."""
-        corners = self.vertices.astype(np.int64)[self.triangles]
-        first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        areas: Int64Array = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-        return areas
+        return doubled_areas(self.vertices, self.triangles)
 
     @property
     def covers_canvas(self) -> bool:
@@ -454,6 +451,14 @@ class Placement:
         """Points of shape (n, 2) in the box, in pixels."""
         moved: Float64Array = points @ self.linear.T + self.offset
         return moved
+
+
+def doubled_areas(vertices: Int32Array, triangles: npt.NDArray[np.integer]) -> Int64Array:
+    """Twice the signed area of every triangle, (m, 3), of vertices, (n, 2); shape (m,), int64."""
+    corners = vertices.astype(np.int64)[triangles]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas: Int64Array = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    return areas
 
 
 def sorted_triangles(triangles: npt.NDArray[np.integer]) -> Int32Array:

@@ -40,7 +40,7 @@ def _sizes(data: bytes) -> Iterator[tuple[int, str]]:
     """Size and meaning of each field."""
     yield from _header_sizes(data)
     header, at = layout.read_header(data, _ignore)
-    n_left, tag = 1, b""  # tiles, or the mesh
+    n_left = 1  # tiles, or the mesh
     while n_left:
         chunk = layout.read_chunk(data, at)
         tag = chunk.tag

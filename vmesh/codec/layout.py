@@ -217,7 +217,7 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     for _ in range(3 + (components & 3) + 1):
         number, end = read_varint(data, end, "header")
         numbers.append(number)
-    verify(data, 0, end, "the header", complain)
+    _verify(data, 0, end, "the header", complain)
     width, height, n_vertices, *steps = numbers
     depth = PLAIN_DEPTH + (components >> 2)
     header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, tuple(steps), depth)
@@ -290,6 +290,12 @@ def read_chunk(data: bytes, offset: int) -> Chunk:
     return Chunk(tag, length, data[start : start + length], offset, start)
 
 
+def verify_chunk(data: bytes, chunk: Chunk, complain: Complain) -> None:
+    """Refuse a chunk that the file does not hold all of, and compare its checksum."""
+    take(data, chunk.content_offset, chunk.length, chunk.name)
+    _verify(data, chunk.offset, chunk.content_end, chunk.name, complain)
+
+
 def check_room(header: Header, chunk: Chunk, code: str) -> None:
     """Refuse a mesh of more colour levels than its bytes can hold, before it is decoded."""
     room = len(chunk.content)
@@ -324,7 +330,7 @@ def read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
     raise FormatError(code, f"expected a number of 0 to {_MAX_VARINT} in its shortest form", offset)
 
 
-def verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
+def _verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
     """Compare the checksum that follows some bytes."""
     (stored,) = _CHECKSUM.unpack(take(data, end, _CHECKSUM.size, name))
     if stored != zlib.crc32(data[start:end]):

@@ -26,9 +26,8 @@ from vmesh.codec.layout import (
     read_header,
     read_varint,
     refuse,
-    take,
     truncated,
-    verify,
+    verify_chunk,
 )
 from vmesh.errors import FormatError
 from vmesh.grid import Grid, Tile
@@ -151,8 +150,7 @@ def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Ch
             complain(truncated(data, chunk.name))
             yield chunk
             return
-        take(data, chunk.content_offset, chunk.length, chunk.name)
-        verify(data, offset, chunk.content_end, chunk.name, complain)
+        verify_chunk(data, chunk, complain)
         if tag == TILE_TAG:
             complain(FormatError("chunk", f"{chunk.name}, a tile, comes before a grid", offset))
         elif chunk.is_critical and tag not in CHUNK_NAMES:
@@ -174,8 +172,7 @@ def _iterate_tiles(
     for _ in range(grid.n_tiles):
         try:
             chunk = read_chunk(data, offset)
-            take(data, chunk.content_offset, chunk.length, chunk.name)
-            verify(data, offset, chunk.content_end, chunk.name, damages.append)
+            verify_chunk(data, chunk, damages.append)
         except FormatError as error:
             lose(error)  # What follows cannot be told apart any more.
             return

@@ -30,6 +30,8 @@ _STEP: Final = 1.08
 # The error falls with about the 0.85th power of the vertices, and a vertex takes about 19 bits:
 # what a bit is worth in squared error, for an error and a number of vertices.
 _PRICE: Final = 0.045
+SAMPLED_POWER: Final = 1.6
+"""The price of a bit falls with about this power of the number of sampled vertices."""
 
 
 class Draft(Protocol):

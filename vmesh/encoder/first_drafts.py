@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from vmesh.arrays import SampleArray
-from vmesh.encoder.drafts import SampledDraft, price_of
+from vmesh.encoder.drafts import SAMPLED_POWER, SampledDraft, price_of
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import guess_vertices, price_of_quality
@@ -50,8 +50,7 @@ def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
     if wanted is None and settings.target_psnr is None:
         price = price_of_quality(_quality(settings), peak_of(image))
         for _ in range(2):
-            # The price falls with about the 1.6th power of the number of vertices.
-            factor = (price_of(draft) / price) ** (1 / 1.6)
+            factor = (price_of(draft) / price) ** (1 / SAMPLED_POWER)
             draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
     return draft
 

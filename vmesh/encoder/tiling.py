@@ -11,7 +11,7 @@ from typing import Any, Final, Generic, TypeVar
 import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
-from vmesh.encoder.drafts import Draft, SampledDraft, price_of
+from vmesh.encoder.drafts import SAMPLED_POWER, Draft, SampledDraft, price_of
 from vmesh.encoder.joining import join
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.waves import Run
@@ -21,8 +21,6 @@ Part = TypeVar("Part", bound=Draft)
 
 _CORNERS: Final = 4
 _NO_ERROR: Final = 1e-9  # instead of 0, where it divides
-# The price falls with about this power of the number of sampled vertices.
-_SAMPLED_POWER: Final = 1.6
 # The error falls with about this power of the number of vertices, and what the least useful one
 # costs with a larger power than that below: a search in such steps comes from above.
 _ERROR_POWER: Final = 0.85
@@ -121,7 +119,7 @@ class TiledSamples(TiledDraft[SampledDraft]):
 
     def balance(self) -> None:
         """Share the vertices out so that a bit is worth about as much in every tile."""
-        worth = [part.n_vertices * price_of(part) ** (1 / _SAMPLED_POWER) for part in self._parts]
+        worth = [part.n_vertices * price_of(part) ** (1 / SAMPLED_POWER) for part in self._parts]
         self._resize_parts(apportion(worth, self._n_apart))
 
 

@@ -531,7 +531,7 @@ def cotangent(points: Int64Array, a: int, b: int, c: int) -> int:
     """Cotangent of the angle at a of the positive triangle a, b, c in sixteenths, rounded down."""
     bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
-    sixteenths: int = 16 * (bx * cx + by * cy) // max(bx * cy - by * cx, 1)
+    sixteenths: int = 16 * (bx * cx + by * cy) // max(area(points, a, b, c), 1)
     return sixteenths
 
 
