@@ -39,7 +39,7 @@ from vmesh.formats.cairo_mesh import MeshPattern, import_cairo
 from vmesh.formats.pdf import write_pdf
 from vmesh.formats.picture import resize
 from vmesh.formats.raster import with_alpha
-from vmesh.formats.svg import write_svg
+from vmesh.formats.svg.document import write_svg
 from vmesh.kernels.scanline import SUBPIXEL, fill
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr

@@ -33,7 +33,7 @@ from tracers import Tracing, tracings_of
 
 import vmesh
 from vmesh.formats.picture import flatten
-from vmesh.formats.svg import write_svg
+from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr
 

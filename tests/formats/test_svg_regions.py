@@ -10,7 +10,7 @@ import pytest
 
 import vmesh
 from tests import twins
-from vmesh.formats.svg_regions import Moments, merge
+from vmesh.formats.svg.regions import Moments, merge
 
 Region = frozenset[int]
 

@@ -11,8 +11,8 @@ from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_se
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
 from vmesh.cli.vector import convert
 from vmesh.formats.registry import FORMATS, format_of
-from vmesh.formats.svg_size import parse_length
-from vmesh.formats.svg_style import Style
+from vmesh.formats.svg.size import parse_length
+from vmesh.formats.svg.style import Style
 
 
 @click.command("to-svg")

@@ -6,7 +6,7 @@ import io
 from typing import Final
 
 from vmesh.formats.raster import render, write_raster
-from vmesh.formats.svg import write_svg
+from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
 
 _LONGEST_SIDE: Final = 1024  # pixels: more than a notebook's column is wide

@@ -24,8 +24,8 @@ from vmesh.formats.sheet import (
     Strokes,
     View,
 )
-from vmesh.formats.svg import NAMESPACE, draw_mesh, gzipped
-from vmesh.formats.svg_style import Style
+from vmesh.formats.svg.document import NAMESPACE, draw_mesh, gzipped
+from vmesh.formats.svg.style import Style
 
 _LINKS: Final = "http://www.w3.org/1999/xlink"
 _FONTS: Final = "Helvetica, Arial, 'Liberation Sans', sans-serif"

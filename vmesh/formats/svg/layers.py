@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
-from vmesh.formats.svg_outlines import Outlines, outlines_of
-from vmesh.formats.svg_regions import Moments, Slopes, merge
-from vmesh.formats.svg_style import Style
+from vmesh.formats.svg.outlines import Outlines, outlines_of
+from vmesh.formats.svg.regions import Moments, Slopes, merge
+from vmesh.formats.svg.style import Style
 from vmesh.mesh import Mesh
 
 _SMALLEST_RANGE: Final = 0.5  # levels: less than that a flat colour shows as well

@@ -20,9 +20,9 @@ from typing import Final
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
-from vmesh.formats.svg_layers import Layer
-from vmesh.formats.svg_outlines import Outlines
-from vmesh.formats.svg_regions import Slopes
+from vmesh.formats.svg.layers import Layer
+from vmesh.formats.svg.outlines import Outlines
+from vmesh.formats.svg.regions import Slopes
 
 _FARTHEST: Final = 10.0  # of an end, in boxes
 _MOST_DIGITS: Final = 4

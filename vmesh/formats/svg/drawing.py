@@ -17,11 +17,11 @@ from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
 from vmesh.formats.raster import scaled_positions
-from vmesh.formats.svg_gradients import gradient_bodies, hex_colors
-from vmesh.formats.svg_layers import Layer, layers_of
-from vmesh.formats.svg_photograph import Photograph
-from vmesh.formats.svg_regions import Moments
-from vmesh.formats.svg_style import Style
+from vmesh.formats.svg.gradients import gradient_bodies, hex_colors
+from vmesh.formats.svg.layers import Layer, layers_of
+from vmesh.formats.svg.photograph import Photograph
+from vmesh.formats.svg.regions import Moments
+from vmesh.formats.svg.style import Style
 from vmesh.kernels.scanline import SUBPIXEL, fill, label
 from vmesh.mesh import Mesh
 from vmesh.progress import Progress

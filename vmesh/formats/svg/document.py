@@ -1,12 +1,12 @@
 """Mesh -> SVG: for each triangle, or region of several, one flat colour or linear gradient.
 
 SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the
-best linear gradient is `svg_regions.py`, its text `svg_gradients.py`. A single channel of colour is
+best linear gradient is `regions.py`, its text `gradients.py`. A single channel of colour is
 drawn exactly, so that three layers, one for each channel, joined by `mix-blend-mode: screen`, show
 the mesh as it is.
 
 Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
-same to the last digit on both sides; or regions reach under their neighbours (`svg_outlines.py`).
+same to the last digit on both sides; or regions reach under their neighbours (`outlines.py`).
 Alpha is drawn as a mask of the same make.
 """
 
@@ -21,10 +21,10 @@ from lxml import etree
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.formats.description import Description
 from vmesh.formats.raster import scaled_positions
-from vmesh.formats.svg_drawing import Drawing
-from vmesh.formats.svg_photograph import Photograph, rgba_of
-from vmesh.formats.svg_size import Length, size_attributes
-from vmesh.formats.svg_style import Mode, Seams, Style
+from vmesh.formats.svg.drawing import Drawing
+from vmesh.formats.svg.photograph import Photograph, rgba_of
+from vmesh.formats.svg.size import Length, size_attributes
+from vmesh.formats.svg.style import Mode, Seams, Style
 from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh

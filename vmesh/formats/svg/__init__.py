@@ -1,0 +1,1 @@
+"""Mesh -> SVG: flat colours and linear gradients on triangles or on regions of several."""
