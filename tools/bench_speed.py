@@ -35,8 +35,8 @@ from PIL import Image
 
 import vmesh
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.formats.cairo_mesh import MeshPattern, import_cairo
-from vmesh.formats.pdf import write_pdf
+from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
+from vmesh.formats.pdf.document import write_pdf
 from vmesh.formats.picture import resize
 from vmesh.formats.raster import with_alpha
 from vmesh.formats.svg.document import write_svg

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
         PartialFileWarning,
         VmeshError,
     )
-    from vmesh.formats.cairo_pdf import paint_mesh
     from vmesh.formats.mesh_import import import_mesh
+    from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster import render
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
@@ -90,7 +90,7 @@ _HOMES: Final = {
     "import_mesh": "vmesh.formats.mesh_import",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",
-    "paint_mesh": "vmesh.formats.cairo_pdf",
+    "paint_mesh": "vmesh.formats.pdf.cairo_backend",
     "register": "vmesh.pillow_plugin",
     "render": "vmesh.formats.raster",
     "study": "vmesh.report.study",

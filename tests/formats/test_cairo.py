@@ -12,7 +12,7 @@ import vmesh
 from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS
 from vmesh.arrays import UInt8Array
-from vmesh.formats.cairo_mesh import import_cairo
+from vmesh.formats.pdf.cairo_patterns import import_cairo
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr
 

@@ -15,7 +15,7 @@ import vmesh
 from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS
 from vmesh.arrays import UInt8Array
-from vmesh.formats.pdf import write_pdf
+from vmesh.formats.pdf.document import write_pdf
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import vmesh
-from vmesh.formats.page import make_page
+from vmesh.formats.pdf.page_size import make_page
 from vmesh.formats.picture import flatten, read_picture
 
 

@@ -10,7 +10,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
-from vmesh.formats.page import points_of
+from vmesh.formats.pdf.page_size import points_of
 from vmesh.formats.registry import FORMATS
 
 

@@ -44,7 +44,7 @@ FORMATS: Final = {
     ".pam": Format("vmesh.formats.pam", "write_pam", "PAM"),
     ".svg": Format("vmesh.formats.svg.document", "write_svg"),
     ".svgz": Format("vmesh.formats.svg.document", "write_svgz"),
-    ".pdf": Format("vmesh.formats.pdf", "write_pdf"),
+    ".pdf": Format("vmesh.formats.pdf.document", "write_pdf"),
     ".html": Format("vmesh.formats.html", "write_html"),
     ".htm": Format("vmesh.formats.html", "write_html"),
     ".ply": Format("vmesh.formats.mesh_files", "write_ply"),

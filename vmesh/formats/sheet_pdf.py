@@ -18,8 +18,8 @@ from typing import Any, BinaryIO, Final
 import pydyf
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.page import Page
-from vmesh.formats.pdf_mesh import MeshPainter, add, page_of
+from vmesh.formats.pdf.mesh_content import MeshPainter, add, page_of
+from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.raster import png_of
 from vmesh.formats.sheet import Color, Frame, Label, MeshPart, Pixels, Sheet, Strokes, View
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 from typing import Any, BinaryIO, Final
 
-from vmesh.formats.cairo_mesh import MeshPattern, import_cairo
 from vmesh.formats.description import Description
-from vmesh.formats.page import Page
+from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
+from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.raster import with_alpha
 from vmesh.mesh import Mesh
 

@@ -14,8 +14,8 @@ from typing import Any, BinaryIO, Literal, get_args
 import pydyf
 
 from vmesh.formats.description import Description
-from vmesh.formats.page import Page, make_page
-from vmesh.formats.pdf_mesh import MeshPainter, add, compressed, page_of
+from vmesh.formats.pdf.mesh_content import MeshPainter, add, compressed, page_of
+from vmesh.formats.pdf.page_size import Page, make_page
 from vmesh.formats.profiles import srgb_profile
 from vmesh.formats.raster import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -61,7 +61,7 @@ def write_pdf(
             raise ValueError(f"expected {name} to be {' or '.join(get_args(known))}, got {value!r}")
     page = make_page(mesh, page_width)
     if backend == "cairo":
-        from vmesh.formats.cairo_pdf import write_cairo_pdf
+        from vmesh.formats.pdf.cairo_backend import write_cairo_pdf
 
         write_cairo_pdf(mesh, stream, page)
     else:
