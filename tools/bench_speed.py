@@ -37,8 +37,8 @@ import vmesh
 from vmesh.arrays import Float64Array, UInt8Array
 from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
 from vmesh.formats.pdf.document import write_pdf
-from vmesh.formats.picture import resize
-from vmesh.formats.raster import with_alpha
+from vmesh.formats.raster.picture import resize
+from vmesh.formats.raster.rendering import with_alpha
 from vmesh.formats.svg.document import write_svg
 from vmesh.kernels.scanline import SUBPIXEL, fill
 from vmesh.mesh import Mesh

@@ -32,7 +32,7 @@ from measurement import (
 from tracers import Tracing, tracings_of
 
 import vmesh
-from vmesh.formats.picture import flatten
+from vmesh.formats.raster.picture import flatten
 from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr

@@ -20,7 +20,7 @@ from raster_codecs import JPEG, WEBP, CodecSearch
 
 import vmesh
 from vmesh.arrays import UInt8Array
-from vmesh.formats.picture import flatten
+from vmesh.formats.raster.picture import flatten
 from vmesh.metrics import psnr
 
 TARGET: Final = Path(__file__).parents[1] / "docs" / "gallery.md"

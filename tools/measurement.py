@@ -19,7 +19,7 @@ from typing import Any, Final
 import click
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.picture import flatten, read_picture
+from vmesh.formats.raster.picture import flatten, read_picture
 
 _SUFFIXES: Final = (".png", ".jpg", ".jpeg")
 _SHIPPED: Final = Path(__file__).resolve().parent.parent / "tests" / "images"

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     )
     from vmesh.formats.mesh_import import import_mesh
     from vmesh.formats.pdf.cairo_backend import paint_mesh
-    from vmesh.formats.raster import render
+    from vmesh.formats.raster.rendering import render
     from vmesh.formats.registry import export
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
@@ -92,7 +92,7 @@ _HOMES: Final = {
     "loads": "vmesh.codec.reader",
     "paint_mesh": "vmesh.formats.pdf.cairo_backend",
     "register": "vmesh.pillow_plugin",
-    "render": "vmesh.formats.raster",
+    "render": "vmesh.formats.raster.rendering",
     "study": "vmesh.report.study",
 }
 

@@ -20,7 +20,7 @@ from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
 from vmesh.errors import FormatError, LimitError, VmeshError
 from vmesh.formats.exif import EXIF_START
-from vmesh.formats.picture import picture_of
+from vmesh.formats.raster.picture import picture_of
 from vmesh.limits import DEFAULT_LIMITS, PLAIN_DEPTH
 from vmesh.mesh import Metadata
 
@@ -167,7 +167,7 @@ def _info_of(metadata: Metadata) -> dict[str, bytes]:
 def _draw(data: bytes, size: tuple[int, int], mode: str) -> bytes:
     """Samples of a file's picture at a size; smaller ones take means of several centres."""
     from vmesh.codec.reader import loads
-    from vmesh.formats.raster import render
+    from vmesh.formats.raster.rendering import render
 
     mesh = loads(data)
     shrink = max(mesh.width / size[0], mesh.height / size[1])

@@ -26,7 +26,7 @@ from vmesh.codec.reader import loads
 from vmesh.codec.validation import validate
 from vmesh.codec.writer import dumps
 from vmesh.errors import FormatError, LimitError, VmeshError
-from vmesh.formats.raster import render
+from vmesh.formats.raster.rendering import render
 from vmesh.limits import FREE_VERTICES, Limits
 
 GREY: Final = dumps(samples.grey())

@@ -15,7 +15,7 @@ import pytest
 
 import vmesh
 from vmesh.codec.text import mesh_text
-from vmesh.formats.pam import write_pam
+from vmesh.formats.raster.pam import write_pam
 
 _FOLDER: Final = Path(__file__).parents[1] / "golden"
 

@@ -17,7 +17,7 @@ from vmesh.codec.reader import loads, measure
 from vmesh.codec.writer import dumps
 from vmesh.encoder.pipeline import encode
 from vmesh.errors import FormatError, PartialFileWarning, VmeshError
-from vmesh.formats.raster import render
+from vmesh.formats.raster.rendering import render
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr

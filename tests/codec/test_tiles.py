@@ -20,7 +20,7 @@ from vmesh.codec.stream import dump, load
 from vmesh.codec.validation import validate
 from vmesh.codec.writer import dumps
 from vmesh.errors import FormatError, LimitError, PartialFileWarning
-from vmesh.formats.raster import render
+from vmesh.formats.raster.rendering import render
 from vmesh.grid import Grid, Tile
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh

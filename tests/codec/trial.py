@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 from vmesh.codec.reader import loads
 from vmesh.codec.writer import dumps
 from vmesh.errors import FormatError, LimitError, PartialFileWarning
-from vmesh.formats.raster import render
+from vmesh.formats.raster.rendering import render
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh
 

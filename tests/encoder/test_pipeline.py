@@ -30,7 +30,7 @@ from vmesh.encoder.colors import sample_colors
 from vmesh.encoder.image import as_image, visible_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.settings import MAX_EFFORT, Settings
-from vmesh.formats.picture import flatten
+from vmesh.formats.raster.picture import flatten
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Mesh, Metadata
 

@@ -14,7 +14,7 @@ from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import guess_vertices, measure_psnr, price_of_quality
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import Settings
-from vmesh.formats.raster import render
+from vmesh.formats.raster.rendering import render
 from vmesh.mesh import Metadata
 from vmesh.metrics import psnr
 

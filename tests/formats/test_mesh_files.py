@@ -18,7 +18,7 @@ import vmesh
 from tests.codec import samples
 from tests.pictures import noise
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster import with_alpha
+from vmesh.formats.raster.rendering import with_alpha
 from vmesh.mesh import Mesh
 
 

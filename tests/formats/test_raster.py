@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 import vmesh
-from vmesh.formats.raster import write_raster
+from vmesh.formats.raster.rendering import write_raster
 from vmesh.metrics import psnr
 
 

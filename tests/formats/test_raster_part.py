@@ -11,7 +11,7 @@ import vmesh
 from tests.pictures import noise
 from vmesh.arrays import Float64Array, UInt8Array
 from vmesh.errors import LimitError
-from vmesh.formats.raster_part import render_part
+from vmesh.formats.raster.region import render_part
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh
 

@@ -15,8 +15,8 @@ from PIL import Image
 import vmesh
 from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS, SVG_RENDERERS
-from vmesh.formats.picture import flatten
-from vmesh.formats.raster import scaled_positions
+from vmesh.formats.raster.picture import flatten
+from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.style import Mode, Style
 from vmesh.kernels.scanline import label
 from vmesh.metrics import psnr

@@ -19,7 +19,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.encoder.settings import Settings
 from vmesh.errors import LimitError
 from vmesh.formats.heat import heat_colors
-from vmesh.formats.picture import flatten
+from vmesh.formats.raster.picture import flatten
 from vmesh.formats.sheet import Frame, Label, MeshPart, Pixels, Sheet, Strokes
 from vmesh.formats.sheet_files import write_sheet
 from vmesh.formats.sheet_raster import draw_sheet

@@ -31,8 +31,8 @@ from tests.spec.recipes import (
 )
 from vmesh.codec.layout import VERSION
 from vmesh.codec.text import mesh_text
-from vmesh.formats.pam import write_pam
-from vmesh.formats.raster import render
+from vmesh.formats.raster.pam import write_pam
+from vmesh.formats.raster.rendering import render
 from vmesh.mesh import Mesh
 
 FOLDER: Final = Path(__file__).parents[2] / "spec" / "conformance"

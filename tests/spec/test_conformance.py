@@ -19,7 +19,7 @@ from tests.spec.build_conformance import build, expected, sha256
 from tests.spec.test_spec import SPEC
 from vmesh.codec.layout import VERSION
 from vmesh.codec.validation import validate
-from vmesh.formats.pam import write_pam
+from vmesh.formats.raster.pam import write_pam
 
 _ROOT: Final = Path(__file__).parents[2]
 _FOLDER: Final = _ROOT / "spec" / "conformance"

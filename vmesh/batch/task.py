@@ -116,7 +116,7 @@ def _load(data: bytes, limits: Limits) -> Mesh:
 
 def _encode(data: bytes, settings: Settings, limits: Limits) -> Mesh:
     from vmesh.encoder.pipeline import encode
-    from vmesh.formats.picture import read_picture
+    from vmesh.formats.raster.picture import read_picture
 
     if not data:
         raise ImageError("the file is empty")

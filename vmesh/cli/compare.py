@@ -45,8 +45,8 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
 
 def _pixels(path: str, limits: Limits, size: tuple[int, int] | None) -> UInt8Array:
     """Pixels of a picture or mesh, shape (h, w, 3), at a size or at its own."""
-    from vmesh.formats.picture import flatten, resize
-    from vmesh.formats.raster import render
+    from vmesh.formats.raster.picture import flatten, resize
+    from vmesh.formats.raster.rendering import render
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(path, limits)

@@ -18,7 +18,7 @@ from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import atomic_output
 
 if TYPE_CHECKING:
-    from vmesh.formats.picture import Picture
+    from vmesh.formats.raster.picture import Picture
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh
 
@@ -99,7 +99,7 @@ def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = Fa
 
 
 def _photograph_of(data: bytes, path: str, limits: Limits) -> Picture:
-    from vmesh.formats.picture import read_picture
+    from vmesh.formats.raster.picture import read_picture
 
     if not data:
         raise ImageError(f"{path}: the file is empty")

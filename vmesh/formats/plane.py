@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array, UInt8Array
-from vmesh.formats.raster import raster_size, with_alpha
+from vmesh.formats.raster.rendering import raster_size, with_alpha
 from vmesh.limits import DEFAULT_LIMITS, MAX_LATTICE_SIDE, MAX_SUBDIVISION, Limits
 from vmesh.mesh import Mesh
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from typing import Final
 
-from vmesh.formats.raster import render, write_raster
+from vmesh.formats.raster.rendering import render, write_raster
 from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
 

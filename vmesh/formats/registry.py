@@ -35,13 +35,13 @@ class Format:
 
 
 FORMATS: Final = {
-    ".png": Format("vmesh.formats.raster", "write_raster", "PNG"),
-    ".jpg": Format("vmesh.formats.raster", "write_raster", "JPEG"),
-    ".jpeg": Format("vmesh.formats.raster", "write_raster", "JPEG"),
-    ".webp": Format("vmesh.formats.raster", "write_raster", "WEBP"),
-    ".tif": Format("vmesh.formats.raster", "write_raster", "TIFF"),
-    ".tiff": Format("vmesh.formats.raster", "write_raster", "TIFF"),
-    ".pam": Format("vmesh.formats.pam", "write_pam", "PAM"),
+    ".png": Format("vmesh.formats.raster.rendering", "write_raster", "PNG"),
+    ".jpg": Format("vmesh.formats.raster.rendering", "write_raster", "JPEG"),
+    ".jpeg": Format("vmesh.formats.raster.rendering", "write_raster", "JPEG"),
+    ".webp": Format("vmesh.formats.raster.rendering", "write_raster", "WEBP"),
+    ".tif": Format("vmesh.formats.raster.rendering", "write_raster", "TIFF"),
+    ".tiff": Format("vmesh.formats.raster.rendering", "write_raster", "TIFF"),
+    ".pam": Format("vmesh.formats.raster.pam", "write_pam", "PAM"),
     ".svg": Format("vmesh.formats.svg.document", "write_svg"),
     ".svgz": Format("vmesh.formats.svg.document", "write_svgz"),
     ".pdf": Format("vmesh.formats.pdf.document", "write_pdf"),
@@ -81,7 +81,7 @@ def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> 
     if not target.is_raster:
         target.writer()(mesh, stream, **options)
         return
-    from vmesh.formats.raster import render
+    from vmesh.formats.raster.rendering import render
 
     raster = render(mesh, **options)
     target.writer()(raster, stream, target.raster_name, metadata=mesh.metadata, depth=mesh.depth)

@@ -25,8 +25,8 @@ import numpy as np
 from PIL import ImageFont
 
 from vmesh.arrays import BoolArray, Float64Array, UInt8Array
-from vmesh.formats.picture import flatten
-from vmesh.formats.raster_part import render_part
+from vmesh.formats.raster.picture import flatten
+from vmesh.formats.raster.region import render_part
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 

@@ -20,7 +20,7 @@ import pydyf
 from vmesh.arrays import UInt8Array
 from vmesh.formats.pdf.mesh_content import MeshPainter, add, page_of
 from vmesh.formats.pdf.page_size import Page
-from vmesh.formats.raster import png_of
+from vmesh.formats.raster.rendering import png_of
 from vmesh.formats.sheet import Color, Frame, Label, MeshPart, Pixels, Sheet, Strokes, View
 
 _ROUND: Final = 1  # line caps

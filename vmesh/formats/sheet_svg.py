@@ -12,7 +12,7 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster import png_of
+from vmesh.formats.raster.rendering import png_of
 from vmesh.formats.sheet import (
     PAPER,
     Color,

@@ -9,8 +9,8 @@ from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.settings import Settings
-from vmesh.formats.picture import flatten
-from vmesh.formats.raster import render
+from vmesh.formats.raster.picture import flatten
+from vmesh.formats.raster.rendering import render
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import psnr

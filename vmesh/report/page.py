@@ -12,8 +12,8 @@ from typing import Final
 from vmesh.arrays import UInt8Array
 from vmesh.formats.description import Description
 from vmesh.formats.html import VIEWER, fill_page
-from vmesh.formats.picture import resize
-from vmesh.formats.raster import png_of
+from vmesh.formats.raster.picture import resize
+from vmesh.formats.raster.rendering import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
 from vmesh.report.study import Study

@@ -11,8 +11,8 @@ from PIL import Image
 
 from vmesh.arrays import UInt8Array
 from vmesh.errors import ImageError
-from vmesh.formats.picture import flatten, read_picture
-from vmesh.formats.raster import LONGEST_SIDES
+from vmesh.formats.raster.picture import flatten, read_picture
+from vmesh.formats.raster.rendering import LONGEST_SIDES
 from vmesh.limits import MAX_SIDE, Limits
 from vmesh.metrics import psnr
 from vmesh.report.search import largest_within

@@ -18,8 +18,8 @@ from vmesh.codec.writer import dumps
 from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import count_steps, encode
 from vmesh.encoder.settings import Settings
-from vmesh.formats.picture import flatten
-from vmesh.formats.raster import render
+from vmesh.formats.raster.picture import flatten
+from vmesh.formats.raster.rendering import render
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import compare

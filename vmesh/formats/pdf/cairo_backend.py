@@ -8,7 +8,7 @@ from typing import Any, BinaryIO, Final
 from vmesh.formats.description import Description
 from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
 from vmesh.formats.pdf.page_size import Page
-from vmesh.formats.raster import with_alpha
+from vmesh.formats.raster.rendering import with_alpha
 from vmesh.mesh import Mesh
 
 # One pattern holds all triangles of most meshes; cairo keeps a pattern in memory several times.

@@ -20,7 +20,7 @@ from lxml import etree
 
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.formats.description import Description
-from vmesh.formats.raster import scaled_positions
+from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.drawing import Drawing
 from vmesh.formats.svg.photograph import Photograph, rgba_of
 from vmesh.formats.svg.size import Length, size_attributes

@@ -16,7 +16,7 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.formats.raster import scaled_positions
+from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.gradients import gradient_bodies, hex_colors
 from vmesh.formats.svg.layers import Layer, layers_of
 from vmesh.formats.svg.photograph import Photograph

@@ -15,7 +15,7 @@ import numpy as np
 
 from vmesh.arrays import Float64Array, Int32Array, SampleArray, UInt8Array
 from vmesh.color_lattice import rescale
-from vmesh.formats.raster import scaled_positions
+from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.regions import Moments
 from vmesh.kernels.scanline import label
 from vmesh.mesh import Mesh

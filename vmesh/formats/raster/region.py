@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 from vmesh.arrays import SampleArray
-from vmesh.formats.raster import rasterize, scaled_positions
+from vmesh.formats.raster.rendering import rasterize, scaled_positions
 from vmesh.kernels.scanline import measure
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Mesh

@@ -1,0 +1,1 @@
+"""Mesh -> pixels, and pixels from and to image files."""
