@@ -33,7 +33,7 @@ if TYPE_CHECKING:
         PartialFileWarning,
         VmeshError,
     )
-    from vmesh.formats.mesh_import import import_mesh
+    from vmesh.formats.models.mesh_import import import_mesh
     from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster.rendering import render
     from vmesh.formats.registry import export
@@ -87,7 +87,7 @@ _HOMES: Final = {
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",
     "export": "vmesh.formats.registry",
-    "import_mesh": "vmesh.formats.mesh_import",
+    "import_mesh": "vmesh.formats.models.mesh_import",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",
     "paint_mesh": "vmesh.formats.pdf.cairo_backend",

@@ -46,7 +46,7 @@ def command(source: str, target: str, color_step: int, quiet: bool, **options: A
         raise click.UsageError("expected --scale or a size, not both")
     check_suffix(target, (FILE_SUFFIX,))
     from vmesh.codec.writer import dumps
-    from vmesh.formats.mesh_import import import_mesh
+    from vmesh.formats.models.mesh_import import import_mesh
 
     with show_progress("importing", 2, quiet=quiet) as report:
         report("reading")

@@ -47,9 +47,9 @@ FORMATS: Final = {
     ".pdf": Format("vmesh.formats.pdf.document", "write_pdf"),
     ".html": Format("vmesh.formats.html", "write_html"),
     ".htm": Format("vmesh.formats.html", "write_html"),
-    ".ply": Format("vmesh.formats.mesh_files", "write_ply"),
-    ".obj": Format("vmesh.formats.mesh_files", "write_obj"),
-    ".glb": Format("vmesh.formats.mesh_files", "write_glb"),
+    ".ply": Format("vmesh.formats.models.mesh_files", "write_ply"),
+    ".obj": Format("vmesh.formats.models.mesh_files", "write_obj"),
+    ".glb": Format("vmesh.formats.models.mesh_files", "write_glb"),
     ".txt": Format("vmesh.codec.text", "write_text"),
 }
 

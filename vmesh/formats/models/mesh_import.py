@@ -7,8 +7,8 @@ from pathlib import Path
 
 from vmesh.codec.text import mesh_from_text
 from vmesh.errors import MeshError
-from vmesh.formats.mesh_files import read_surface
-from vmesh.formats.plane import mesh_of
+from vmesh.formats.models.mesh_files import read_surface
+from vmesh.formats.models.plane import mesh_of
 from vmesh.formats.registry import MESH_SUFFIXES
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh

@@ -13,14 +13,14 @@ import numpy as np
 
 from vmesh.arrays import UInt8Array
 from vmesh.errors import LimitError, MeshError, VmeshError
-from vmesh.formats.gltf import (
+from vmesh.formats.models.gltf import (
     COLOR,
     finish_tree,
     linear_from_srgb,
     srgb_from_linear,
     with_renamed_colors,
 )
-from vmesh.formats.plane import Surface, surface_of
+from vmesh.formats.models.plane import Surface, surface_of
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
