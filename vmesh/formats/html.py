@@ -15,7 +15,7 @@ from lxml import etree
 
 from vmesh.codec.writer import dumps
 from vmesh.formats.bundle import WEB, bundle
-from vmesh.formats.description import Description
+from vmesh.formats.metadata.description import Description
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 

@@ -10,8 +10,8 @@ from string import Template
 from typing import Final
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.description import Description
 from vmesh.formats.html import VIEWER, fill_page
+from vmesh.formats.metadata.description import Description
 from vmesh.formats.raster.picture import resize
 from vmesh.formats.raster.rendering import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from typing import Any, BinaryIO, Final
 
-from vmesh.formats.description import Description
+from vmesh.formats.metadata.description import Description
 from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
 from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.raster.rendering import with_alpha

@@ -13,10 +13,10 @@ from typing import Any, BinaryIO, Literal, get_args
 
 import pydyf
 
-from vmesh.formats.description import Description
+from vmesh.formats.metadata.description import Description
+from vmesh.formats.metadata.profiles import srgb_profile
 from vmesh.formats.pdf.mesh_content import MeshPainter, add, compressed, page_of
 from vmesh.formats.pdf.page_size import Page, make_page
-from vmesh.formats.profiles import srgb_profile
 from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Final
 
-from vmesh.formats.exif import (
+from vmesh.formats.metadata.exif import (
     CENTIMETRE,
     INCH,
     RESOLUTION_UNIT,

@@ -13,7 +13,13 @@ from PIL import Image, ImageOps
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.color_lattice import rescale
 from vmesh.errors import ImageError
-from vmesh.formats.exif import EXIF_START, INCH, RESOLUTION_UNIT, X_RESOLUTION, Y_RESOLUTION
+from vmesh.formats.metadata.exif import (
+    EXIF_START,
+    INCH,
+    RESOLUTION_UNIT,
+    X_RESOLUTION,
+    Y_RESOLUTION,
+)
 from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata

@@ -11,7 +11,7 @@ from PIL import Image
 
 from vmesh.arrays import Int32Array, Int64Array, SampleArray
 from vmesh.color_lattice import rescale
-from vmesh.formats.exif import EXIF_START
+from vmesh.formats.metadata.exif import EXIF_START
 from vmesh.kernels.scanline import SUBPIXEL, draw, measure
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Matrix, Mesh, Metadata, Placement

@@ -19,7 +19,7 @@ import numpy as np
 from lxml import etree
 
 from vmesh.arrays import SampleArray, UInt8Array
-from vmesh.formats.description import Description
+from vmesh.formats.metadata.description import Description
 from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.drawing import Drawing
 from vmesh.formats.svg.photograph import Photograph, rgba_of

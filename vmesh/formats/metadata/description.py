@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 from xml.sax.saxutils import escape
 
-from vmesh.formats.exif import read_exif
+from vmesh.formats.metadata.exif import read_exif
 from vmesh.mesh import Metadata
 
 _PRODUCER: Final = "vmesh"
