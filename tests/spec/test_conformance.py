@@ -169,7 +169,7 @@ def test_the_runner_refuses_what_it_cannot_run() -> None:
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="there is no Node on this machine")
 def test_the_decoder_in_javascript_passes_all_files() -> None:
-    decoder = f"node {_ROOT / 'vmesh' / 'formats' / 'web' / 'decode.js'} {{in}} {{out}}"
+    decoder = f"node {_ROOT / 'vmesh' / 'web' / 'decoder' / 'decode.js'} {{in}} {{out}}"
     status, output = run(decoder)
     assert status == 0, output
     assert os.linesep.join(output.splitlines()) == (

@@ -14,10 +14,10 @@ from typing import BinaryIO, Final
 from lxml import etree
 
 from vmesh.codec.writer import dumps
-from vmesh.formats.bundle import WEB, bundle
 from vmesh.formats.metadata.description import Description
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
+from vmesh.web.bundle import WEB, bundle
 
 VIEWER: Final = WEB / "viewer"
 

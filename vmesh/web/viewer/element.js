@@ -5,7 +5,7 @@
  * properties `object-fit` and `object-position` do what they do for `<img>`.
  */
 
-import { decode } from "../vmesh.js";
+import { decode } from "../decoder/vmesh.js";
 import { paintWhole } from "./sharedpainter.js";
 
 class VmeshImage extends HTMLElement {

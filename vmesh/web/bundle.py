@@ -15,7 +15,7 @@ from importlib.resources.abc import Traversable
 from posixpath import dirname, join, normpath
 from typing import Final
 
-WEB: Final[Traversable] = files("vmesh.formats") / "web"
+WEB: Final[Traversable] = files("vmesh.web")
 
 _IMPORT: Final = re.compile(r'^import \{ (\w+(?:, \w+)*) \} from "([./\w]+)";\n', re.MULTILINE)
 _EXPORTED: Final = re.compile(r"^export (?=(?:class|const|function\*?) (\w+))", re.MULTILINE)
@@ -25,7 +25,7 @@ _END_OF_SCRIPT: Final = re.compile(r"</script|<!--", re.IGNORECASE)
 
 
 def bundle(entry: str) -> str:
-    """One script of a module of `formats/web` and of all that it imports.
+    """One script of a module of `vmesh/web` and of all that it imports.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 /** Draws meshes without WebGL: the decoder's own raster, or triangle by triangle if enlarged. */
 
-import { render } from "../vmesh.js";
+import { render } from "../decoder/vmesh.js";
 import { endsOf } from "./edges.js";
 import { drawEnlarged, placesOf } from "./enlarge.js";
 import { fillRgba } from "./rgba.js";
@@ -12,7 +12,7 @@ export class RasterPainter {
     this.canvas = context.canvas;
   }
 
-  /** @param {import("../vmesh.js").Mesh} mesh */
+  /** @param {import("../decoder/vmesh.js").Mesh} mesh */
   setMesh(mesh) {
     this.mesh = mesh;
     this.ends = null;

@@ -65,7 +65,7 @@ export class GlPainter {
     if (this.mesh) this.setMesh(this.mesh);
   }
 
-  /** @param {import("../vmesh.js").Mesh} mesh */
+  /** @param {import("../decoder/vmesh.js").Mesh} mesh */
   setMesh(mesh) {
     const { gl } = this;
     this.mesh = mesh;

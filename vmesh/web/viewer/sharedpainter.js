@@ -9,7 +9,7 @@ let painter;
 /**
  * Makes a mesh fill a canvas, which gets so many columns and rows; fewer where they are too many.
  *
- * @param {import("../vmesh.js").Mesh} mesh
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
  * @param {HTMLCanvasElement} canvas
  * @param {object} [marks] as a painter's `draw` takes them
  */

@@ -1,6 +1,6 @@
 /** The page that shows the `.vmesh` file inside it, or one that is dropped on it. */
 
-import { decode } from "../vmesh.js";
+import { decode } from "../decoder/vmesh.js";
 import { bytesIn } from "./embedded.js";
 import { listenToGestures } from "./gestures.js";
 import { painterFor } from "./painter.js";

@@ -11,7 +11,7 @@
 import { fillRgba } from "./rgba.js";
 
 /**
- * @param {import("../vmesh.js").Mesh} mesh
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
  * @param {Float64Array} places x and y of each vertex in the image
  * @param {ImageData} image transparent
  */

@@ -1,6 +1,6 @@
 /** A report: meshes beside their photographs, with a divider to drag. */
 
-import { decode } from "../vmesh.js";
+import { decode } from "../decoder/vmesh.js";
 import { bytesIn } from "./embedded.js";
 import { paintWhole } from "./sharedpainter.js";
 

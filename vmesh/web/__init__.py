@@ -1,0 +1,1 @@
+"""The second decoder and the viewer, in JavaScript, and what joins their modules to one script."""
