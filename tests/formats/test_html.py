@@ -14,7 +14,7 @@ import vmesh
 from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, settle, wait_until
 from tests.pictures import PICTURES, psnr
 from vmesh.arrays import UInt8Array
-from vmesh.formats.html import element_script, page_of
+from vmesh.formats.html.document import element_script, page_of
 from vmesh.formats.raster.picture import flatten
 
 BAR = 40  # rows below the stage

@@ -46,6 +46,6 @@ def command(
 def write_element(target: str) -> None:
     """Write the script of the custom element."""
     check_suffix(target, (".js", ".mjs"))
-    from vmesh.formats.html import element_script
+    from vmesh.formats.html.document import element_script
 
     write_output(target, lambda stream: stream.write(element_script().encode()))

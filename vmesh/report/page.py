@@ -10,7 +10,7 @@ from string import Template
 from typing import Final
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.html import VIEWER, fill_page
+from vmesh.formats.html.document import VIEWER, fill_page
 from vmesh.formats.metadata.description import Description
 from vmesh.formats.raster.picture import resize
 from vmesh.formats.raster.rendering import png_of

@@ -10,7 +10,7 @@ import pytest
 import vmesh
 from tests.pictures import PICTURES
 from vmesh.formats import bundle as bundling
-from vmesh.formats.html import name_of, page_of
+from vmesh.formats.html.document import name_of, page_of
 from vmesh.mesh import Metadata
 
 XMP = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF
