@@ -18,12 +18,12 @@ from tests.pictures import PICTURES, psnr
 from vmesh.arrays import UInt8Array
 from vmesh.encoder.settings import Settings
 from vmesh.errors import LimitError
-from vmesh.formats.heat import heat_colors
 from vmesh.formats.raster.picture import flatten
-from vmesh.formats.sheet import Frame, Label, MeshPart, Pixels, Sheet, Strokes
-from vmesh.formats.sheet_files import write_sheet
-from vmesh.formats.sheet_raster import draw_sheet
+from vmesh.inspection.heat import heat_colors
 from vmesh.inspection.region import Region
+from vmesh.inspection.sheet.files import write_sheet
+from vmesh.inspection.sheet.items import Frame, Label, MeshPart, Pixels, Sheet, Strokes
+from vmesh.inspection.sheet.raster import draw_sheet
 from vmesh.inspection.sheets import stages_sheet, view_sheet
 from vmesh.inspection.stages import Inspection, inspect_encoding
 from vmesh.inspection.views import DRAWINGS

@@ -61,7 +61,7 @@ def command(source: str, target: str, show: str, quiet: bool, **options: Any) ->
     check_suffix(target, SHEET_SUFFIXES)
     suffix = ".png" if target == STANDARD else Path(target).suffix.lower()
     from vmesh.encoder.pipeline import count_steps
-    from vmesh.formats.sheet_files import write_sheet
+    from vmesh.inspection.sheet.files import write_sheet
     from vmesh.inspection.sheets import stages_sheet, view_sheet
     from vmesh.inspection.stages import inspect_encoding
 

@@ -19,10 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.formats.heat import heat_colors
-from vmesh.formats.sheet import Align, Color, Frame, Item, Label, Pixels, View, shortened
+from vmesh.inspection.heat import heat_colors
 from vmesh.inspection.panels import Panel
 from vmesh.inspection.region import Region
+from vmesh.inspection.sheet.items import Align, Color, Frame, Item, Label, Pixels, View, shortened
 from vmesh.inspection.stages import Inspection
 from vmesh.inspection.views import INK, draw_error, error_top
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vmesh.arrays import Float64Array
-from vmesh.formats.sheet import PAPER, Frame, Item, View
 from vmesh.inspection.region import Region
+from vmesh.inspection.sheet.items import PAPER, Frame, Item, View
 from vmesh.inspection.stages import Inspection
 from vmesh.inspection.views import (
     DRAWINGS,

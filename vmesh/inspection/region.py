@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from vmesh.formats.sheet import View
+from vmesh.inspection.sheet.items import View
 from vmesh.limits import MAX_SIDE
 
 # What is smaller is enlarged by a whole number, what is larger is reduced.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vmesh.formats.sheet import Sheet, printable
 from vmesh.inspection.layout import Layout
 from vmesh.inspection.panels import enlargement_panels, figures_of, stage_panels
 from vmesh.inspection.region import Region
+from vmesh.inspection.sheet.items import Sheet, printable
 from vmesh.inspection.stages import Inspection
 from vmesh.inspection.views import DRAWINGS
 

@@ -11,9 +11,9 @@ from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
-from vmesh.formats.heat import error_levels
 from vmesh.formats.raster.picture import flatten
 from vmesh.formats.raster.rendering import render
+from vmesh.inspection.heat import error_levels
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.metrics import psnr

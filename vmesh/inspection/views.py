@@ -9,8 +9,8 @@ import numpy as np
 from PIL import Image
 
 from vmesh.arrays import Float64Array, Int64Array, UInt8Array
-from vmesh.formats.heat import heat_colors, scale_top
-from vmesh.formats.sheet import Color, Item, MeshPart, Pixels, Strokes, View
+from vmesh.inspection.heat import heat_colors, scale_top
+from vmesh.inspection.sheet.items import Color, Item, MeshPart, Pixels, Strokes, View
 from vmesh.inspection.stages import Inspection
 from vmesh.mesh import Mesh
 

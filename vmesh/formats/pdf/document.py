@@ -4,7 +4,7 @@
 
     catalog -- XMP
       page -- the picture's own XMP
-        content:   scale to pixels, the mesh (``pdf_mesh.py``)
+        content:   scale to pixels, the mesh (``mesh_content.py``)
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ import pytest
 
 from tests.pictures import noise
 from vmesh.arrays import Float64Array, UInt8Array
-from vmesh.formats.heat import error_levels, heat_colors, scale_top
+from vmesh.inspection.heat import error_levels, heat_colors, scale_top
 from vmesh.metrics import psnr
 
 

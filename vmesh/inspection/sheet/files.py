@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import BinaryIO
 
 from vmesh.formats.registry import FORMATS
-from vmesh.formats.sheet import Sheet
-from vmesh.formats.sheet_pdf import write_sheet_pdf
-from vmesh.formats.sheet_raster import draw_sheet
-from vmesh.formats.sheet_svg import write_sheet_svg, write_sheet_svgz
+from vmesh.inspection.sheet.items import Sheet
+from vmesh.inspection.sheet.pdf import write_sheet_pdf
+from vmesh.inspection.sheet.raster import draw_sheet
+from vmesh.inspection.sheet.svg import write_sheet_svg, write_sheet_svgz
 from vmesh.limits import DEFAULT_LIMITS, Limits
 
 _VECTOR_WRITERS = {

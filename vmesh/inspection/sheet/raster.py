@@ -9,7 +9,16 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.sheet import PAPER, Frame, Label, MeshPart, Pixels, Sheet, Strokes, font_of
+from vmesh.inspection.sheet.items import (
+    PAPER,
+    Frame,
+    Label,
+    MeshPart,
+    Pixels,
+    Sheet,
+    Strokes,
+    font_of,
+)
 from vmesh.limits import DEFAULT_LIMITS, Limits
 
 _SAMPLES: Final = 3  # per unit and direction, for smooth strokes

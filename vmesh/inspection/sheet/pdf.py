@@ -5,7 +5,7 @@ A unit of the page's content is one of the sheet, y down::
     page
       content:   for each item, between q and Q: a picture, a form, strokes, text
       /I0 ...    pictures
-      /M0 ...    forms that draw a mesh (``pdf_mesh.py``)
+      /M0 ...    forms that draw a mesh (``formats/pdf/mesh_content.py``)
       /F         Helvetica, which every program has
 """
 
@@ -21,7 +21,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.formats.pdf.mesh_content import MeshPainter, add, page_of
 from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.raster.rendering import png_of
-from vmesh.formats.sheet import Color, Frame, Label, MeshPart, Pixels, Sheet, Strokes, View
+from vmesh.inspection.sheet.items import Color, Frame, Label, MeshPart, Pixels, Sheet, Strokes, View
 
 _ROUND: Final = 1  # line caps
 _FONT: Final = {

@@ -13,7 +13,9 @@ from lxml import etree
 
 from vmesh.arrays import UInt8Array
 from vmesh.formats.raster.rendering import png_of
-from vmesh.formats.sheet import (
+from vmesh.formats.svg.document import NAMESPACE, draw_mesh, gzipped
+from vmesh.formats.svg.style import Style
+from vmesh.inspection.sheet.items import (
     PAPER,
     Color,
     Frame,
@@ -24,8 +26,6 @@ from vmesh.formats.sheet import (
     Strokes,
     View,
 )
-from vmesh.formats.svg.document import NAMESPACE, draw_mesh, gzipped
-from vmesh.formats.svg.style import Style
 
 _LINKS: Final = "http://www.w3.org/1999/xlink"
 _FONTS: Final = "Helvetica, Arial, 'Liberation Sans', sans-serif"

@@ -1,0 +1,1 @@
+"""Sheets: pictures, drawings and words at their places, and their writers."""
