@@ -9,9 +9,9 @@ import pytest
 
 import vmesh
 from tests.pictures import PICTURES
-from vmesh.formats import bundle as bundling
 from vmesh.formats.html.document import name_of, page_of
 from vmesh.mesh import Metadata
+from vmesh.web import bundle as bundling
 
 XMP = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF
 xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description

@@ -11,7 +11,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
-from vmesh.formats.registry import SHEET_SUFFIXES
+from vmesh.inspection.sheet import SHEET_SUFFIXES
 
 if TYPE_CHECKING:
     from vmesh.inspection.region import Region

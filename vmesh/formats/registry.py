@@ -56,8 +56,6 @@ FORMATS: Final = {
 # Those that hold a mesh as other programs know it, and are read too.
 MESH_SUFFIXES: Final = (".ply", ".obj", ".glb", ".txt")
 RASTER_SUFFIXES: Final = tuple(suffix for suffix, f in FORMATS.items() if f.is_raster)
-# Those of sheets (``sheet_files.py``).
-SHEET_SUFFIXES: Final = (*RASTER_SUFFIXES, ".svg", ".svgz", ".pdf")
 
 
 def format_of(path: str | os.PathLike[str]) -> Format:

@@ -21,7 +21,7 @@ _VECTOR_WRITERS = {
 def write_sheet(
     sheet: Sheet, stream: BinaryIO, suffix: str, *, limits: Limits = DEFAULT_LIMITS
 ) -> None:
-    """Write a sheet into an open file, in the format of a suffix of `registry.SHEET_SUFFIXES`."""
+    """Write a sheet into an open file, in the format of a suffix of `SHEET_SUFFIXES`."""
     if suffix in _VECTOR_WRITERS:
         _VECTOR_WRITERS[suffix](sheet, stream)
     else:
