@@ -14,7 +14,7 @@ from typing import IO, Any, Final
 from PIL import Image, ImageFile
 
 from vmesh.codec import layout
-from vmesh.codec.listing import read_ancillary
+from vmesh.codec.container import read_ancillary
 from vmesh.codec.metadata import read_metadata
 from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings

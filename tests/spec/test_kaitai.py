@@ -14,7 +14,7 @@ import yaml
 
 from tests.spec.kaitai import Reader, parse
 from vmesh.codec import layout
-from vmesh.codec.listing import read_file
+from vmesh.codec.container import read_file
 
 _SPEC: Final = Path(__file__).parents[2] / "spec"
 _KSY: Final = yaml.safe_load((_SPEC / "vmesh.ksy").read_text(encoding="utf-8"))
@@ -75,7 +75,7 @@ def figures_of(file: Any) -> dict[str, Any]:
 
 def expected(data: bytes) -> dict[str, Any]:
     """The same by the reader of the library."""
-    listing = read_file(data)
+    container = read_file(data)
     header, at = layout.read_header(data)
     ends, chunks = [at - 4], []
     while at < len(data):
@@ -93,9 +93,9 @@ def expected(data: bytes) -> dict[str, Any]:
         "depth": header.depth,
         "steps": list(header.steps),
         "chunks": [(chunk.tag.decode(), chunk.length, chunk.content) for chunk in chunks],
-        "sides": [listing.grid.side] if listing.grid else [],
-        "tiles": [(own.n_vertices, chunk.content) for own, chunk in listing.found]
-        if listing.grid
+        "sides": [container.grid.side] if container.grid else [],
+        "tiles": [(own.n_vertices, chunk.content) for own, chunk in container.found]
+        if container.grid
         else [],
         "checksums": [int.from_bytes(data[end : end + 4], "little") for end in ends],
     }

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from vmesh.codec import layout
+from vmesh.codec.container import first_number, read_grid
 from vmesh.codec.layout import Chunk
-from vmesh.codec.listing import first_number, read_grid
 from vmesh.errors import FormatError
 from vmesh.limits import PLAIN_DEPTH
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vmesh.codec import layout
-from vmesh.codec.listing import read_file
+from vmesh.codec.container import read_file
 from vmesh.limits import Limits
 
 
@@ -15,8 +15,8 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
     tags and checksums, is the frame.
     """
-    listing = read_file(data)
-    header = listing.header
+    container = read_file(data)
+    header = container.header
     figures: dict[str, Any] = {
         "version": layout.version_name(data[len(layout.SIGNATURE)]),
         "width": header.width,
@@ -28,20 +28,20 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
         "vertices": header.n_vertices,
         "connectivity": layout.CONNECTIVITY_NAMES[header.connectivity],
         "tiles": None
-        if listing.grid is None
+        if container.grid is None
         else {
-            "side": listing.grid.side,
-            "columns": listing.grid.columns,
-            "rows": listing.grid.rows,
+            "side": container.grid.side,
+            "columns": container.grid.columns,
+            "rows": container.grid.rows,
         },
         "bytes": len(data),
         "bits_per_vertex": round(8 * len(data) / header.n_vertices, 3),
     }
     ancillary = [
         (layout.CHUNK_NAMES.get(chunk.tag, chunk.tag.decode()), len(chunk.content))
-        for chunk in listing.ancillary
+        for chunk in container.ancillary
     ]
-    coded = [("mesh", sum(len(chunk.content) for _, chunk in listing.found))]
+    coded = [("mesh", sum(len(chunk.content) for _, chunk in container.found))]
     if by_parts:
         from vmesh.codec.reader import measure
 

@@ -21,7 +21,7 @@ def read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain
     limits : Limits
         How far the chunks may inflate.
     complain : callable
-        Told of chunks that are damaged, as that of `listing.read_file`.
+        Told of chunks that are damaged, as that of `container.read_file`.
 
     Raises
     ------

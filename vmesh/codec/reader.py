@@ -5,8 +5,8 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 
+from vmesh.codec.container import Container, read_file
 from vmesh.codec.layout import SIGNATURE, Complain, refuse
-from vmesh.codec.listing import Listing, read_file
 from vmesh.codec.metadata import read_metadata
 from vmesh.codec.payloads import decode_mesh
 from vmesh.codec.tiles import fill, join
@@ -73,7 +73,7 @@ def measure(
     """Mesh of the bytes of a ``.vmesh`` file, and how many of them its parts take.
 
     Parameters and errors are those of :func:`loads`; `complain` and `lose` are those of
-    `listing.read_file`.
+    `container.read_file`.
 
     Returns
     -------
@@ -87,30 +87,30 @@ def measure(
 
 
 def decode(
-    listing: Listing, limits: Limits, complain: Complain, lose: Complain
+    container: Container, limits: Limits, complain: Complain, lose: Complain
 ) -> tuple[Mesh, dict[str, int]]:
     """Mesh of the chunks of a file, and the bytes of its parts, as `measure`."""
-    header, found = listing.header, listing.found
+    header, found = container.header, container.found
     limits.check_pixels(header.width, header.height)
     limits.check_vertices(header.n_vertices)
     n_vertices = sum(own.n_vertices for own, _ in found)
     limits.check_vertices(n_vertices)
     limits.check_density(n_vertices, sum(len(chunk.content) for _, chunk in found))
-    metadata = read_metadata(listing.ancillary, limits, complain)
-    if listing.grid is None:
+    metadata = read_metadata(container.ancillary, limits, complain)
+    if container.grid is None:
         ((own, chunk),) = found
         mesh, sizes = decode_mesh(chunk, own)
     else:
-        limits.check_tiles(listing.grid.n_tiles)
-        mesh, sizes = _decode_tiles(listing, listing.grid, lose)
+        limits.check_tiles(container.grid.n_tiles)
+        mesh, sizes = _decode_tiles(container, container.grid, lose)
     return mesh.replaced(metadata=metadata), sizes
 
 
-def _decode_tiles(listing: Listing, grid: Grid, lose: Complain) -> tuple[Mesh, dict[str, int]]:
+def _decode_tiles(container: Container, grid: Grid, lose: Complain) -> tuple[Mesh, dict[str, int]]:
     """Mesh of the tiles, those that are lost filled in, and the bytes of its parts."""
     pieces: list[Mesh | None] = [None] * grid.n_tiles
     sizes: Counter[str] = Counter()
-    for number, coded in enumerate(listing.coded):
+    for number, coded in enumerate(container.coded):
         if coded is not None:
             try:
                 pieces[number], parts = decode_mesh(coded.chunk, coded.header)
@@ -119,12 +119,12 @@ def _decode_tiles(listing: Listing, grid: Grid, lose: Complain) -> tuple[Mesh, d
                 lose(error)
     if not any(pieces):
         raise FormatError("tiles", "no tile of the file can be read", 0)
-    mesh = join(listing, grid, pieces)
+    mesh = join(container, grid, pieces)
     if not all(pieces):
         tiles = zip(grid.tiles(), pieces, strict=True)
         whole = [piece or fill(mesh, tile) for tile, piece in tiles]
-        return join(listing, grid, whole), dict(sizes)
-    if mesh.n_vertices != listing.header.n_vertices:
-        text = f"expected {listing.header.n_vertices} vertices, the tiles hold {mesh.n_vertices}"
+        return join(container, grid, whole), dict(sizes)
+    if mesh.n_vertices != container.header.n_vertices:
+        text = f"expected {container.header.n_vertices} vertices, the tiles hold {mesh.n_vertices}"
         raise FormatError("tiles", text, len(SIGNATURE))
     return mesh, dict(sizes)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from vmesh.arrays import BoolArray, Int32Array, Int64Array
-from vmesh.codec.listing import Listing
+from vmesh.codec.container import Container
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.grid import Grid, Tile
@@ -48,7 +48,7 @@ def _piece(mesh: Mesh, tile: Tile, triangles: Int32Array) -> Mesh:
     )
 
 
-def join(listing: Listing, grid: Grid, pieces: Sequence[Mesh | None]) -> Mesh:
+def join(container: Container, grid: Grid, pieces: Sequence[Mesh | None]) -> Mesh:
     """The mesh of the pieces in the tiles of a grid; tiles without one stay empty.
 
     Raises
@@ -57,7 +57,7 @@ def join(listing: Listing, grid: Grid, pieces: Sequence[Mesh | None]) -> Mesh:
         With the code ``tiles``, if two neighbours have other vertices, or vertices of other
         colours, on the side that they share.
     """
-    header = listing.header
+    header = container.header
     unit = 1 << header.subdivision
     found = [(number, piece) for number, piece in enumerate(pieces) if piece is not None]
     corners = np.array([tile[:2] for tile in grid.tiles()], dtype=np.int32) * unit
@@ -69,8 +69,8 @@ def join(listing: Listing, grid: Grid, pieces: Sequence[Mesh | None]) -> Mesh:
     )
     there = np.array([piece is not None for piece in pieces]).reshape(grid.rows, grid.columns)
     expected = _n_tiles_at(vertices[first], grid.side * unit, there)
-    _check_fit(listing, "vertices", owners[(counts != expected)[places]])
-    _check_fit(listing, "colours", owners[(levels != levels[first][places]).any(axis=1)])
+    _check_fit(container, "vertices", owners[(counts != expected)[places]])
+    _check_fit(container, "colours", owners[(levels != levels[first][places]).any(axis=1)])
     starts = np.cumsum([0, *(piece.n_vertices for _, piece in found)])
     triangles = [
         places[start + piece.triangles] for start, (_, piece) in zip(starts, found, strict=False)
@@ -87,10 +87,10 @@ def join(listing: Listing, grid: Grid, pieces: Sequence[Mesh | None]) -> Mesh:
     )
 
 
-def _check_fit(listing: Listing, what: str, tiles: Int64Array) -> None:
+def _check_fit(container: Container, what: str, tiles: Int64Array) -> None:
     """Complain of tiles that differ from a neighbour."""
     if tiles.size:
-        coded = listing.coded[tiles[0]]
+        coded = container.coded[tiles[0]]
         text = f"tile {tiles[0]} and a neighbour have other {what} on the side that they share"
         raise FormatError("tiles", text, coded.chunk.offset if coded else 0)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from vmesh.codec.container import read_file
 from vmesh.codec.layout import CHUNK_NAMES
-from vmesh.codec.listing import read_file
 from vmesh.codec.reader import decode
 from vmesh.errors import FormatError, LimitError
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -69,12 +69,12 @@ def validate(
         found[finding] = None
 
     try:
-        listing = read_file(bytes(memoryview(data)), complain, complain)
-        for chunk in listing.ancillary:
+        container = read_file(bytes(memoryview(data)), complain, complain)
+        for chunk in container.ancillary:
             if not chunk.is_critical and chunk.tag not in CHUNK_NAMES:
                 text = f"ancillary chunk {chunk.tag.decode()} is unknown, and kept as it is"
                 found[Finding(Severity.NOTE, "unknown", text, chunk.offset)] = None
-        decode(listing, limits, complain, complain)
+        decode(container, limits, complain, complain)
     except (FormatError, LimitError) as error:
         complain(error)
     return list(found)

@@ -49,7 +49,7 @@ class Coded(NamedTuple):
     chunk: Chunk
 
 
-class Listing(NamedTuple):
+class Container(NamedTuple):
     """What a file holds.
 
     Attributes
@@ -74,7 +74,7 @@ class Listing(NamedTuple):
         return [coded for coded in self.coded if coded is not None]
 
 
-def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse) -> Listing:
+def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse) -> Container:
     """The header of a file, every field within its range, and all chunks.
 
     Checksums are verified, the contents of the chunks are not looked at, but for the grid and the
@@ -99,12 +99,12 @@ def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse)
     if first.tag == MESH_TAG:
         _check_end(data, first, complain)
         check_room(header, first, "header")
-        return Listing(header, ancillary, None, [Coded(header, first)])
+        return Container(header, ancillary, None, [Coded(header, first)])
     grid = read_grid(first, header)
     chunks = list(_iterate_tiles(data, first.end, grid, complain, lose))
     tiles = zip(grid.tiles(), chunks, strict=False)
     coded = [_open_tile(header, tile, chunk, lose) for tile, chunk in tiles]
-    return Listing(header, ancillary, grid, coded)
+    return Container(header, ancillary, grid, coded)
 
 
 def read_ancillary(data: bytes) -> list[Chunk]:
