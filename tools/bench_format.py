@@ -29,7 +29,7 @@ from measurement import (
 
 import vmesh
 from vmesh.codec.layout import LISTED_TRIANGLES, Header
-from vmesh.codec.payloads import encode_mesh
+from vmesh.codec.mesh_coder import encode_mesh
 from vmesh.codec.reader import measure
 from vmesh.mesh import Mesh
 

@@ -28,7 +28,7 @@ from tests.codec.damage import (
 from tests.codec.trial import try_file
 from vmesh.arrays import Int32Array
 from vmesh.codec.hierarchy import build_hierarchy
-from vmesh.codec.payloads import Encoder, Flips, encode
+from vmesh.codec.mesh_coder import Encoder, Flips, encode
 from vmesh.codec.reader import loads, measure
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice

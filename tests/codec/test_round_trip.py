@@ -15,8 +15,8 @@ from tests.pictures import PICTURES, drawn
 from tests.strategies import flipped, meshes, raster_sorted
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.codec.hierarchy import build_hierarchy
-from vmesh.codec.payloads import Encoder, find_flips
-from vmesh.codec.payloads import encode as encode_parts
+from vmesh.codec.mesh_coder import Encoder, find_flips
+from vmesh.codec.mesh_coder import encode as encode_parts
 from vmesh.codec.reader import loads, measure
 from vmesh.codec.stream import dump, load
 from vmesh.codec.writer import dumps

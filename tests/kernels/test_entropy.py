@@ -11,7 +11,7 @@ from tests import twins
 from tests.strategies import flipped, lattices, meshes, point_sets, raster_sorted
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
-from vmesh.codec.payloads import Decoder, Encoder, encode, find_flips
+from vmesh.codec.mesh_coder import Decoder, Encoder, encode, find_flips
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy

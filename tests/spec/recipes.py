@@ -23,7 +23,7 @@ from tests.codec.damage import (
 )
 from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
-from vmesh.codec.payloads import Encoder, encode
+from vmesh.codec.mesh_coder import Encoder, encode
 from vmesh.codec.reader import measure
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay

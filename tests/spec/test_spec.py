@@ -35,7 +35,7 @@ from tests.strategies import meshes
 from vmesh.arrays import Int32Array
 from vmesh.codec import layout
 from vmesh.codec.hierarchy import Hierarchy
-from vmesh.codec.payloads import Decoder, Encoder, encode
+from vmesh.codec.mesh_coder import Decoder, Encoder, encode
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels import entropy
 from vmesh.kernels.scanline import SUBPIXEL, cover

@@ -7,8 +7,8 @@ from collections import Counter
 
 from vmesh.codec.container import Container, read_file
 from vmesh.codec.layout import SIGNATURE, Complain, refuse
+from vmesh.codec.mesh_coder import decode_mesh
 from vmesh.codec.metadata import read_metadata
-from vmesh.codec.payloads import decode_mesh
 from vmesh.codec.tiles import fill, join
 from vmesh.errors import FormatError, PartialFileWarning
 from vmesh.grid import Grid

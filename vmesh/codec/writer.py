@@ -6,7 +6,7 @@ import zlib
 from collections.abc import Iterator
 
 from vmesh.codec import layout
-from vmesh.codec.payloads import encode_mesh, find_flips
+from vmesh.codec.mesh_coder import encode_mesh, find_flips
 from vmesh.codec.tiles import cut
 from vmesh.grid import Grid
 from vmesh.mesh import Mesh, Metadata
