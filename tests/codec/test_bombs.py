@@ -21,7 +21,7 @@ from tests.codec.damage import (
     with_header,
 )
 from tests.spec.recipes import count_bomb, largest_canvas, overdrawn, slivers
-from vmesh.codec.annotation import annotate
+from vmesh.codec.hex_dump import annotate
 from vmesh.codec.reader import loads
 from vmesh.codec.validation import validate
 from vmesh.codec.writer import dumps

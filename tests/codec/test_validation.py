@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tests.codec import samples
 from tests.codec.damage import file_of, mutant, split, with_header
-from vmesh.codec.annotation import annotate
+from vmesh.codec.hex_dump import annotate
 from vmesh.codec.reader import loads
 from vmesh.codec.validation import Finding, Severity, validate
 from vmesh.codec.writer import dumps

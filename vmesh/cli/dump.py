@@ -9,7 +9,7 @@ import click
 
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input, read_mesh
-from vmesh.codec.annotation import Field, annotate
+from vmesh.codec.hex_dump import Field, annotate
 
 _BYTES_PER_LINE: Final = 16
 

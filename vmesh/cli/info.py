@@ -9,7 +9,7 @@ import click
 
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.streams import read_input
-from vmesh.codec.contents import describe
+from vmesh.codec.summary import describe
 from vmesh.errors import FormatError, LimitError
 
 

@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy.typing as npt
 
 from vmesh.arrays import SampleArray, UInt8Array
-from vmesh.codec.contents import describe
 from vmesh.codec.reader import loads
+from vmesh.codec.summary import describe
 from vmesh.codec.writer import dumps
 from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import count_steps, encode
