@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+import vmesh
 from vmesh.kernels import jit
 
 SCRIPT = """
@@ -39,6 +41,51 @@ def run(cache: Path) -> list[str]:
 def test_the_first_run_announces_that_it_compiles_and_the_second_does_not(tmp_path: Path) -> None:
     assert run(tmp_path) == ["compiling", "done"]
     assert run(tmp_path) == ["done"]
+
+
+CALLER = """
+from vmesh.kernels.callee import factor
+from vmesh.kernels.jit import kernel, on_first_compilation
+
+@kernel
+def multiplied(x):
+    return factor() * x
+
+with on_first_compilation(lambda: print("compiling")):
+    print(multiplied(7))
+"""
+CALLEE = """
+from vmesh.kernels.jit import inner_kernel
+
+@inner_kernel
+def factor():
+    return {}
+"""
+
+
+def test_a_change_in_a_kernel_recompiles_its_callers_in_other_files(tmp_path: Path) -> None:
+    package = tmp_path / "vmesh"
+    kernels = package / "kernels"
+    kernels.mkdir(parents=True)
+    for name in ("__init__.py", "kernels/__init__.py", "kernels/jit.py"):
+        shutil.copy(Path(vmesh.__file__).parent / name, package / name)
+    (kernels / "caller.py").write_text(CALLER)
+
+    def run_caller(factor: int) -> list[str]:
+        (kernels / "callee.py").write_text(CALLEE.format(factor))
+        done = subprocess.run(
+            [sys.executable, "-m", "vmesh.kernels.caller"],
+            env={**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path)},
+            cwd=tmp_path,
+            capture_output=True,
+            check=True,
+            text=True,
+        )
+        return done.stdout.split()
+
+    assert run_caller(6) == ["compiling", "42"]
+    assert run_caller(6) == ["42"]
+    assert run_caller(5) == ["compiling", "35"]
 
 
 def without_cache(**options: Any) -> Any:

@@ -1,6 +1,6 @@
 """Compiled loops: plain arrays in, plain arrays out. The only package that imports Numba.
 
 A kernel assumes the shapes, dtypes and contiguity that its docstring states; the callers cast and
-check. It calls kernels of its own file only, because the compilation cache of a kernel does not
-notice changes in other files, and takes tables as arguments for the same reason.
+check. Kernels call kernels of any file here, since a change in one makes the compilation cache of
+all out of date (``jit``). Tables from elsewhere they take as arguments: those it does not notice.
 """

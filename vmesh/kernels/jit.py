@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
+from hashlib import blake2b
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from numba import njit
@@ -33,12 +36,12 @@ def kernel(function: Function) -> Function:
 
 
 def lean_kernel(function: Function) -> Function:
-    """A kernel that makes no arrays, for other kernels of its own file to call in their loops."""
+    """A kernel that makes no arrays, for other kernels to call in their loops."""
     return _cached(function, _LEAN_OPTIONS)
 
 
 def inner_kernel(function: Function) -> Function:
-    """A lean kernel that nothing but kernels of its own file calls: no way in from Python.
+    """A lean kernel that nothing but kernels calls: no way in from Python.
 
     Not making one takes up to half off the time that its compilation takes. A call from Python
     ends the process.
@@ -49,9 +52,26 @@ def inner_kernel(function: Function) -> Function:
 def _cached(function: Function, options: dict[str, Any]) -> Function:
     """Compile a function, and keep it where there is a place for that."""
     try:
-        return cast("Function", njit(cache=True, **options)(function))
+        dispatcher = njit(cache=True, **options)(function)
     except RuntimeError:  # Numba found no folder that it may write its cache to.
         return cast("Function", njit(**options)(function))
+    kept = getattr(dispatcher, "_cache", None)  # None where Numba is told not to compile.
+    if kept is not None:
+        # Numba compares the stamp of the function's own file, but the code of the kernels that it
+        # calls, from whatever file, is part of what is kept.
+        kept._cache_file._source_stamp = (kept._cache_file._source_stamp, _digest_of_sources())
+    return cast("Function", dispatcher)
+
+
+@cache
+def _digest_of_sources() -> str:
+    """Digest of all kernels' sources: any change in them makes what is kept out of date."""
+    folder = Path(__file__).parent
+    digest = blake2b(digest_size=16)
+    for path in sorted(folder.rglob("*.py")):
+        source = path.read_bytes()
+        digest.update(f"{path.relative_to(folder).as_posix()} {len(source)}\n".encode() + source)
+    return digest.hexdigest()
 
 
 class _FirstCompilation(event.Listener):
