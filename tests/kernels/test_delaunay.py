@@ -13,11 +13,10 @@ from vmesh.kernels.delaunay import (
     TOO_MANY_FLIPS,
     delaunay,
     flip_to_delaunay,
-    in_circle,
-    sort_triangles,
     sweep,
 )
-from vmesh.kernels.half_edges import find_twins
+from vmesh.kernels.half_edges import find_twins, sort_triangles
+from vmesh.kernels.predicates import in_circle
 from vmesh.limits import MAX_LATTICE_SIDE
 from vmesh.mesh import sorted_triangles
 

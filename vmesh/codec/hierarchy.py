@@ -19,8 +19,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vmesh.arrays import BoolArray, Int32Array, Int64Array
-from vmesh.kernels.delaunay import peel
 from vmesh.kernels.half_edges import find_twins
+from vmesh.kernels.hierarchy import remove_independent_sets
 
 MAX_TRIANGLES: Final = 8
 """A vertex of more triangles than this is not taken: it has to wait until there are fewer."""
@@ -64,7 +64,7 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
     # Without them layers would be taken out until nothing is left to hold the rest.
     if np.count_nonzero(is_corner) != 4:
         raise ValueError("expected the corners of the bounding box among the vertices")
-    taken, neighbours, counts, ends = peel(
+    taken, neighbours, counts, ends = remove_independent_sets(
         vertices.astype(np.int64),
         triangles.reshape(-1).copy(),
         find_twins(triangles, len(vertices)),

@@ -15,8 +15,8 @@ from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Chunk, Heade
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.kernels import entropy
-from vmesh.kernels.delaunay import delaunay, flip_to_delaunay, sort_triangles
-from vmesh.kernels.half_edges import find_twins
+from vmesh.kernels.delaunay import delaunay, flip_to_delaunay
+from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.mesh import Mesh, raster_keys
 
 # Zero bytes that a writer may cut off the end: as many as the coder holds in advance. So what a

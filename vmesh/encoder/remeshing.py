@@ -13,8 +13,8 @@ from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.drafts import UNIT, price_of
 from vmesh.encoder.image import peak_of, visible_planes
 from vmesh.encoder.waves import Run, run_here, shares, waves
-from vmesh.kernels.delaunay import delaunay, sort_triangles
-from vmesh.kernels.half_edges import find_twins
+from vmesh.kernels.delaunay import delaunay
+from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.kernels.remeshing import (
     Room,
     Surface,

@@ -1,14 +1,110 @@
-"""Half-edges of a triangle mesh.
+"""Half-edges of a triangle mesh: walks around them, and the changes that all meshing is made of.
 
-Triangle t has the half-edges 3t, 3t+1, 3t+2; half-edge e leaves vertex ``triangles.flat[e]``.
+Triangle t has the half-edges 3t, 3t+1, 3t+2. ``origin[e]``, which is ``triangles.flat[e]``, is the
+vertex that half-edge e leaves, and ``twin[e]`` the half-edge on its other side, -1 on the border::
+
+               a                 edge e runs from b to c, its twin from c to b;
+             / | \\               the quad a, b, d, c has the diagonal b-c now
+            /  |  \\              and a-d after a flip
+           b --e-- c
+            \\  |  /
+             \\ | /
+               d
 """
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 import numpy as np
 
-from vmesh.arrays import BoolArray, Int32Array, Int64Array
-from vmesh.kernels.jit import kernel
+from vmesh.arrays import AnyIntArray, BoolArray, Int32Array, Int64Array
+from vmesh.kernels.jit import inner_kernel, kernel
+
+Index: TypeAlias = int | np.integer
+
+
+@inner_kernel
+def next_edge(e: Index) -> int:
+    """Half-edge after e in the same triangle."""
+    return e - 2 if e % 3 == 2 else e + 1
+
+
+@inner_kernel
+def previous_edge(e: Index) -> int:
+    """Half-edge before e in the same triangle."""
+    return e + 2 if e % 3 == 0 else e - 1
+
+
+@inner_kernel
+def link(twin: AnyIntArray, e: Index, f: Index) -> None:
+    """Make two half-edges each other's twin; either may be -1."""
+    if e >= 0:
+        twin[e] = f
+    if f >= 0:
+        twin[f] = e
+
+
+@inner_kernel
+def place_triangle(
+    origin: AnyIntArray, leaving: AnyIntArray, t: int, a: int, b: int, c: int
+) -> None:
+    """Make t the triangle a, b, c; what is across its sides is left as it was."""
+    e = 3 * t
+    origin[e], origin[e + 1], origin[e + 2] = a, b, c
+    leaving[a], leaving[b], leaving[c] = e, e + 1, e + 2
+
+
+@inner_kernel
+def flip(origin: Int32Array, twin: Int32Array, e: Index) -> None:
+    """Turn the diagonal of the two triangles at half-edge e.
+
+    Before, e runs from b to c and the triangles are (b, c, a) and (c, b, d); after, e's triangle
+    is (d, c, a) with the diagonal as the half-edge from a to d, and the other is (a, b, d).
+    """
+    f = twin[e]
+    e_prev, f_prev = previous_edge(e), previous_edge(f)
+    a, d = origin[e_prev], origin[f_prev]
+    outer_e, outer_f = twin[e_prev], twin[f_prev]
+    origin[e] = d
+    origin[f] = a
+    link(twin, e, outer_f)
+    link(twin, f, outer_e)
+    link(twin, e_prev, f_prev)
+    # e: d -> c, e_next: c -> a, e_prev: a -> d;  f: a -> b, f_next: b -> d, f_prev: d -> a.
+
+
+@inner_kernel
+def collect_ring(
+    origin: AnyIntArray, twin: AnyIntArray, start: int, star: AnyIntArray, ring: AnyIntArray
+) -> tuple[int, int]:
+    """Neighbours of a vertex, into `ring`, and the half-edges that leave it, into `star`.
+
+    Both are in positive order, and `start` is one of the half-edges. Returns the number of
+    neighbours, 0 if there are more triangles than `star` holds, and the number of triangles, which
+    is one less on the border.
+    """
+    first = start
+    # On the border, turn back to the first triangle.
+    while twin[first] >= 0:
+        first = next_edge(twin[first])
+        if first == start:
+            break
+    e = first
+    n = 0
+    while True:
+        if n == star.shape[0]:
+            return 0, 0
+        star[n] = e
+        ring[n] = origin[next_edge(e)]
+        n += 1
+        arriving = previous_edge(e)
+        e = twin[arriving]
+        if e < 0:
+            ring[n] = origin[arriving]
+            return n + 1, n
+        if e == first:
+            return n, n
 
 
 @kernel
@@ -36,9 +132,9 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
     for v in range(n_vertices):
         for i in range(starts[v], starts[v + 1]):
             e = leaving[i]
-            to[origin[e - 2 if e % 3 == 2 else e + 1]] = e
+            to[origin[next_edge(e)]] = e
         for i in range(starts[v], starts[v + 1]):
-            arriving = leaving[i] + 2 if leaving[i] % 3 == 0 else leaving[i] - 1
+            arriving = previous_edge(leaving[i])
             e = to[origin[arriving]]
             if e >= 0 and origin[e] == v:
                 twin[arriving] = e
@@ -79,8 +175,46 @@ def walk_outlines(
             seen[e] = True
             ordered[n] = e
             n += 1
-            e = e - 2 if e % 3 == 2 else e + 1
+            e = next_edge(e)
             # Turn about the corner, from triangle to triangle, until the region ends.
             while inner[e]:
-                e = twins[e] - 2 if twins[e] % 3 == 2 else twins[e] + 1
+                e = next_edge(twins[e])
     return ordered, loops[:n_loops]
+
+
+@kernel
+def sort_triangles(triangles: Int32Array, n_points: int) -> Int32Array:
+    """Triangles with the lowest vertex first, in lexicographic order; two counting sorts.
+
+    Parameters
+    ----------
+    triangles : ndarray
+        Shape (m, 3), int32, indices below `n_points`; turned in place.
+
+    Returns
+    -------
+    ndarray
+        Shape (m, 3), int32.
+    """
+    count = triangles.shape[0]
+    for t in range(count):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        if b < a and b < c:
+            triangles[t, 0], triangles[t, 1], triangles[t, 2] = b, c, a
+        elif c < a and c < b:
+            triangles[t, 0], triangles[t, 1], triangles[t, 2] = c, a, b
+    source = triangles
+    for column in (1, 0):
+        place = np.zeros(n_points + 1, np.int64)
+        for t in range(count):
+            place[source[t, column] + 1] += 1
+        for v in range(n_points):
+            place[v + 1] += place[v]
+        target = np.empty_like(triangles)
+        for t in range(count):
+            v = source[t, column]
+            for corner in range(3):
+                target[place[v], corner] = source[t, corner]
+            place[v] += 1
+        source = target
+    return source

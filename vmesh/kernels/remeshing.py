@@ -12,10 +12,8 @@ what an edit gains or costs is known from the triangles it touches::
      \\|  \\|/            |/                |/ \\|             |/  |        outer   far half-edge of
       f---e             c                 c---d             c---d                each of its sides
 
-Half-edges are those of ``delaunay``: triangle t has 3t, 3t+1, 3t+2, ``origin[e]`` is the vertex
-that half-edge e leaves and ``twin[e]`` the half-edge on its other side, -1 on the border. Triangles
-and vertices that are not in use have ``origin`` and ``leaving`` -1. Coordinates are in half pixels:
-pixel (x, y) has its centre at (2x + 1, 2y + 1).
+Half-edges are those of ``half_edges``. Triangles and vertices that are not in use have ``origin``
+and ``leaving`` -1. Coordinates are in half pixels: pixel (x, y) has its centre at (2x + 1, 2y + 1).
 
 References
 ----------
@@ -33,7 +31,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vmesh.arrays import BoolArray, Float64Array, Int64Array, UInt8Array
+from vmesh.kernels import half_edges
+from vmesh.kernels.ears import clip_ears, fill_star
+from vmesh.kernels.half_edges import link, next_edge, place_triangle, previous_edge
 from vmesh.kernels.jit import inner_kernel, kernel
+from vmesh.kernels.predicates import in_circle_float, orient
 
 MAX_RING = 48
 """A vertex with more neighbours than this is left as it is."""
@@ -103,7 +105,7 @@ def make_room(height: int, n_components: int) -> Room:
     return Room(
         ring=np.zeros(MAX_RING, np.int64),
         outer=np.zeros(MAX_RING, np.int64),
-        star=np.zeros(MAX_RING, np.int64),
+        star=np.zeros(MAX_RING - 2, np.int64),
         places=np.zeros(MAX_RING, np.int64),
         ears=np.zeros((MAX_RING, 3), np.int64),
         rows=np.zeros((height, 2), np.int64),
@@ -111,47 +113,6 @@ def make_room(height: int, n_components: int) -> Room:
         side_sums=np.zeros((MAX_RING, 2 + n_components)),
         promises=np.zeros((2 * _REACH + 1, 2 * _REACH + 1)),
     )
-
-
-@inner_kernel
-def after(e: int) -> int:
-    """The next half-edge of the same triangle."""
-    return e - 2 if e % 3 == 2 else e + 1
-
-
-@inner_kernel
-def before(e: int) -> int:
-    """The half-edge before, of the same triangle."""
-    return e + 2 if e % 3 == 0 else e - 1
-
-
-@inner_kernel
-def cross(points: Int64Array, a: int, b: int, c: int) -> np.int64:
-    """Doubled signed area of three points."""
-    bx, by = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
-    cx, cy = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1]
-    area: np.int64 = bx * cy - by * cx
-    return area
-
-
-@inner_kernel
-def inside_circle(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
-    """Whether d is inside the circle through the positive triangle a, b, c.
-
-    In floating point: exact for differences below 5,000, and an error beyond that only costs a
-    little quality.
-    """
-    ax = float(points[a, 0] - points[d, 0])
-    ay = float(points[a, 1] - points[d, 1])
-    bx = float(points[b, 0] - points[d, 0])
-    by = float(points[b, 1] - points[d, 1])
-    cx = float(points[c, 0] - points[d, 0])
-    cy = float(points[c, 1] - points[d, 1])
-    return (
-        (ax * ax + ay * ay) * (bx * cy - by * cx)
-        + (bx * bx + by * by) * (cx * ay - cy * ax)
-        + (cx * cx + cy * cy) * (ax * by - ay * bx)
-    ) > 0.0
 
 
 # --- Sums over the pixels of a triangle -----------------------------------------------------------
@@ -328,21 +289,19 @@ def measure(surface: Surface, image: UInt8Array, room: Room, first: int, last: i
 
 
 @inner_kernel
-def link(twin: Int64Array, e: int, f: int) -> None:
-    """Make two half-edges each other's twin; f may be -1."""
-    twin[e] = f
-    if f >= 0:
-        twin[f] = e
-
-
-@inner_kernel
 def set_triangle(
     surface: Surface, image: UInt8Array, room: Room, t: int, a: int, b: int, c: int
 ) -> None:
     """Make t the triangle a, b, c."""
-    e = 3 * t
-    surface.origin[e], surface.origin[e + 1], surface.origin[e + 2] = a, b, c
-    surface.leaving[a], surface.leaving[b], surface.leaving[c] = e, e + 1, e + 2
+    place_triangle(surface.origin, surface.leaving, t, a, b, c)
+    update_triangle(surface, image, room, t, a, b, c)
+
+
+@inner_kernel
+def update_triangle(
+    surface: Surface, image: UInt8Array, room: Room, t: int, a: int, b: int, c: int
+) -> None:
+    """Measure triangle t, which became a, b, c, and note that its corners have changed around."""
     surface.restless[a] = surface.restless[b] = surface.restless[c] = True
     surface.errors[t] = triangle_error(surface, image, room, a, b, c)
 
@@ -358,77 +317,24 @@ def free_triangle(surface: Surface, t: int) -> None:
 
 @inner_kernel
 def collect_ring(surface: Surface, room: Room, v: int) -> tuple[int, int]:
-    """Neighbours, far half-edges and triangles around a vertex, into `room`.
+    """Neighbours, far half-edges and star of a vertex, into `room`.
 
     Returns the number of neighbours, 0 if they are too many, and the number of triangles, which is
     one less on the border. Inside, the first neighbour is repeated after the last.
     """
-    origin, twin = surface.origin, surface.twin
+    origin, twin, leaving = surface.origin, surface.twin, surface.leaving
     ring, outer, star = room.ring, room.outer, room.star
-    first = surface.leaving[v]
-    start = first
-    # On the border, turn back to the first triangle.
-    while twin[start] >= 0:
-        start = after(twin[start])
-        if start == first:
-            break
-    e = start
-    n = 0
-    while True:
-        if n >= MAX_RING - 2:
-            return 0, 0
-        ring[n] = origin[after(e)]
-        outer[n] = twin[after(e)]
-        star[n] = e // 3
-        n += 1
-        if twin[before(e)] < 0:
-            ring[n] = origin[before(e)]
-            outer[n] = -1
-            return n + 1, n
-        e = twin[before(e)]
-        if e == start:
-            ring[n] = ring[0]
-            return n, n
+    size, n_sides = half_edges.collect_ring(origin, twin, leaving[v], star, ring)
+    for i in range(n_sides):
+        outer[i] = twin[next_edge(star[i])]
+    if n_sides < size:
+        outer[n_sides] = -1
+    else:
+        ring[size] = ring[0]
+    return size, n_sides
 
 
 # --- Removing -------------------------------------------------------------------------------------
-
-
-@inner_kernel
-def fill_hole(points: Int64Array, room: Room, size: int) -> int:
-    """Triangulate the ring by clipping Delaunay ears; the number of triangles, -1 if it fails.
-
-    Each ear is three places in the ring, in ``room.ears``: the clipped one is in the middle.
-    """
-    ring, left, ears = room.ring, room.places, room.ears
-    for i in range(size):
-        left[i] = i
-    n = size
-    count = 0
-    while n >= 3:
-        clipped = -1
-        for i in range(n):
-            a, b, c = left[i - 1 if i > 0 else n - 1], left[i], left[i + 1 if i + 1 < n else 0]
-            if cross(points, ring[a], ring[b], ring[c]) <= 0:
-                continue
-            clipped = i
-            for k in range(n):
-                d = left[k]
-                if d not in (a, b, c) and inside_circle(points, ring[a], ring[b], ring[c], ring[d]):
-                    clipped = -1
-                    break
-            if clipped >= 0:
-                ears[count, 0], ears[count, 1], ears[count, 2] = a, b, c
-                break
-        if clipped < 0:
-            return -1
-        count += 1
-        n -= 1
-        for i in range(clipped, n):
-            left[i] = left[i + 1]
-        if n == 2:
-            break
-    return count
 
 
 @inner_kernel
@@ -441,14 +347,14 @@ def removal_cost(surface: Surface, image: UInt8Array, room: Room, v: int) -> flo
     size, n_sides = collect_ring(surface, room, v)
     if size < 3:
         return np.inf
-    if n_sides < size and cross(surface.points, ring[size - 1], v, ring[0]) != 0:
+    if n_sides < size and orient(surface.points, ring[size - 1], v, ring[0]) != 0:
         return np.inf
-    count = fill_hole(surface.points, room, size)
+    count = clip_ears(surface.points, ring, size, room.places, ears, False)
     if count < 0:
         return np.inf
     cost = 0.0
     for i in range(n_sides):
-        cost -= surface.errors[room.star[i]]
+        cost -= surface.errors[room.star[i] // 3]
     for i in range(count):
         a, b, c = ring[ears[i, 0]], ring[ears[i, 1]], ring[ears[i, 2]]
         cost += triangle_error(surface, image, room, a, b, c)
@@ -458,20 +364,17 @@ def removal_cost(surface: Surface, image: UInt8Array, room: Room, v: int) -> flo
 @inner_kernel
 def remove(surface: Surface, image: UInt8Array, room: Room, v: int) -> int:
     """Remove a vertex and fill the hole; the ring keeps its neighbours, whose number is given."""
-    ring, outer, star, ears, twin = room.ring, room.outer, room.star, room.ears, surface.twin
+    points, origin, twin, leaving = surface.points, surface.origin, surface.twin, surface.leaving
+    ring, star, ears = room.ring, room.star, room.ears
     size, n_sides = collect_ring(surface, room, v)
-    count = fill_hole(surface.points, room, size)
-    surface.leaving[v] = -1
+    count = clip_ears(points, ring, size, room.places, ears, False)
+    leaving[v] = -1
     for i in range(count, n_sides):
-        free_triangle(surface, star[i])
-    # outer[i] becomes the half-edge across the side from place i of the ring to the next one left.
+        free_triangle(surface, star[i] // 3)
+    fill_star(origin, twin, leaving, star, ring, room.outer, ears, count)
     for i in range(count):
-        t, a, b, c = star[i], ears[i, 0], ears[i, 1], ears[i, 2]
-        set_triangle(surface, image, room, t, ring[a], ring[b], ring[c])
-        link(twin, 3 * t, outer[a])
-        link(twin, 3 * t + 1, outer[b])
-        link(twin, 3 * t + 2, outer[c] if i == count - 1 else -1)
-        outer[a] = 3 * t + 2
+        a, b, c = ring[ears[i, 0]], ring[ears[i, 1]], ring[ears[i, 2]]
+        update_triangle(surface, image, room, star[i] // 3, a, b, c)
     return size
 
 
@@ -867,7 +770,7 @@ def relocate(surface: Surface, image: UInt8Array, room: Room, vertices: Int64Arr
             for i in range(size):
                 restless[room.ring[i]] = True
         for i in range(n_sides):
-            surface.errors[room.star[i]] = triangle_error(
+            surface.errors[room.star[i] // 3] = triangle_error(
                 surface, image, room, v, room.ring[i], room.ring[i + 1]
             )
     return moved
@@ -886,19 +789,19 @@ def flip_edges(surface: Surface, image: UInt8Array, room: Room, charge: float) -
         if f < e:
             continue
         #  e runs from b to c in the triangle b, c, a; f back from c to b in c, b, d.
-        b, c, a, d = origin[e], origin[f], origin[before(e)], origin[before(f)]
-        if cross(points, a, d, c) <= 0 or cross(points, d, a, b) <= 0:
+        b, c, a, d = origin[e], origin[f], origin[previous_edge(e)], origin[previous_edge(f)]
+        if orient(points, a, d, c) <= 0 or orient(points, d, a, b) <= 0:
             continue
         first = triangle_error(surface, image, room, a, d, c)
         gain = errors[e // 3] + errors[f // 3] - first
-        gain += -charge if not inside_circle(points, b, c, a, d) else charge
+        gain += -charge if not in_circle_float(points, b, c, a, d) else charge
         if gain <= _LEAST_GAIN:
             continue
         gain -= triangle_error(surface, image, room, d, a, b)
         if gain <= _LEAST_GAIN:
             continue
-        far_ca, far_ab = twin[after(e)], twin[before(e)]
-        far_bd, far_dc = twin[after(f)], twin[before(f)]
+        far_ca, far_ab = twin[next_edge(e)], twin[previous_edge(e)]
+        far_bd, far_dc = twin[next_edge(f)], twin[previous_edge(f)]
         t, u = e // 3, f // 3
         set_triangle(surface, image, room, t, a, d, c)
         set_triangle(surface, image, room, u, d, a, b)
