@@ -8,7 +8,7 @@ from tests.twins import directed_edges, in_circle_determinant
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels.delaunay import delaunay
-from vmesh.kernels.remeshing import Surface, make_room, measure
+from vmesh.kernels.remeshing import Surface, make_workspace, measure
 from vmesh.mesh import Mesh
 
 
@@ -43,7 +43,7 @@ def scattered(width: int, height: int, n: int, seed: int) -> Int32Array:
 def open_surface(
     image: UInt8Array, vertices: Int32Array, colors: Float64Array, n_spare: int = 0
 ) -> Surface:
-    """The Delaunay triangles of some vertices, measured, with room for more vertices."""
+    """The Delaunay triangles of some vertices, measured, with work for more vertices."""
     triangles = delaunay(vertices)
     n_edges, more = triangles.size, 6 * n_spare
     edges = directed_edges(triangles)
@@ -57,7 +57,7 @@ def open_surface(
         twin=np.array([*twins, *[-1] * more], dtype=np.int64),
         leaving=leaving,
         errors=np.zeros(len(triangles) + 2 * n_spare),
-        restless=np.ones(len(vertices) + n_spare, dtype=bool),
+        dirty=np.ones(len(vertices) + n_spare, dtype=bool),
     )
     measure_all(surface, image)
     return surface
@@ -65,7 +65,7 @@ def open_surface(
 
 def measure_all(surface: Surface, image: UInt8Array) -> float:
     """Compute the errors of all triangles anew; their sum."""
-    measure(surface, image, make_room(image.shape[0], image.shape[2]), 0, len(surface.errors))
+    measure(surface, image, make_workspace(image.shape[0], image.shape[2]), 0, len(surface.errors))
     return float(surface.errors.sum())
 
 

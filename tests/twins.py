@@ -292,7 +292,7 @@ def color_parabolas(
     return parabolas
 
 
-def step_promises(
+def predicted_changes(
     points: Int64Array,
     triangles: Iterable[Sequence[int]],
     colors: Float64Array,
@@ -326,7 +326,7 @@ def step_promises(
                 residual = float(image[y, x, z]) - weights @ values
                 rows.append((z, residual, weights[0], *(weights[0] * gradient)))
     table = np.array(rows)
-    promises = {}
+    changes = {}
     for step in steps:
         total = 0.0
         for z in range(image.shape[2]):
@@ -334,8 +334,8 @@ def step_promises(
             moved = residual + slope_x * step[0] + slope_y * step[1]
             change = (weight @ moved) / (weight @ weight)
             total += float(((moved - weight * change) ** 2).sum() - (residual**2).sum())
-        promises[step] = total
-    return promises
+        changes[step] = total
+    return changes
 
 
 def independent_set(

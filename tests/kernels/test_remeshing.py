@@ -16,11 +16,11 @@ from tests.surfaces import check_surface, measure_all, open_surface, scattered, 
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.remeshing import (
-    Room,
     Surface,
+    Workspace,
     flip_edges,
     insert,
-    make_room,
+    make_workspace,
     propose_insertions,
     relocate,
     thin,
@@ -33,17 +33,17 @@ RIDGE = 1e-2  # as the kernels hold a vertex that no pixel tells of
 REACH, N_TRIES, MAX_STEPS = 3, 3, 8
 
 
-def room_for(image: UInt8Array) -> Room:
-    return make_room(image.shape[0], image.shape[2])
+def room_for(image: UInt8Array) -> Workspace:
+    return make_workspace(image.shape[0], image.shape[2])
 
 
 def remove(surface: Surface, image: UInt8Array, n_remove: int, max_cost: float) -> int:
     """Remove the vertices that cost least, without chance; how many went."""
-    room = room_for(image)
+    work = room_for(image)
     n_points = len(surface.points)
     costs = np.zeros(n_points)
-    weigh(surface, image, room, 0, n_points, costs)
-    return thin(surface, image, room, costs, np.ones(n_points), n_remove, max_cost)
+    weigh(surface, image, work, 0, n_points, costs)
+    return thin(surface, image, work, costs, np.ones(n_points), n_remove, max_cost)
 
 
 def random_colors(n: int, n_components: int, seed: int = 0) -> Float64Array:
@@ -337,8 +337,8 @@ def walk(surface: Surface, image: UInt8Array, v: int) -> tuple[float, list[tuple
     path: list[tuple[int, int]] = []
     while len(path) < MAX_STEPS:
         colors[v] = twins.best_color(points, faces, colors, image, v, RIDGE)
-        promises = twins.step_promises(points, faces, colors, image, v, steps)
-        places = [(place[0] + x, place[1] + y) for x, y in sorted(steps, key=promises.__getitem__)]
+        changes = twins.predicted_changes(points, faces, colors, image, v, steps)
+        places = [(place[0] + x, place[1] + y) for x, y in sorted(steps, key=changes.__getitem__)]
         tried = [p for p in places if is_allowed(p)][:N_TRIES]
         better = [p for p in tried if error_at(p) < least - 1e-3]
         if not better:
@@ -350,18 +350,18 @@ def walk(surface: Surface, image: UInt8Array, v: int) -> tuple[float, list[tuple
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_vertex_walks_to_better_places_among_those_that_promise_most(seed: int) -> None:
+def test_a_vertex_walks_to_better_places_by_the_largest_predicted_decrease(seed: int) -> None:
     image = noise(20, 24, 3, seed)
-    room = room_for(image)
+    work = room_for(image)
     for v in range(16):
         surface = surface_on(image, 8, seed)
         corner = all(p in (0, limit) for p, limit in zip(surface.points[v], (48, 40), strict=True))
         least, path = (0.0, []) if corner else walk(surface, image, v)
         before = surface.points[v].tolist()
-        surface.restless[:v] = False
+        surface.dirty[:v] = False
         # Those after it would be woken up by its move.
         surface.leaving[v + 1 :] = -1
-        moved = relocate(surface, image, room, np.arange(len(surface.points)))
+        moved = relocate(surface, image, work, np.arange(len(surface.points)))
         check_errors(surface, image)
         assert moved == bool(path)
         assert surface.points[v].tolist() == [*map(list, path), before][len(path) - 1]
@@ -376,10 +376,10 @@ def test_a_vertex_walks_to_better_places_among_those_that_promise_most(seed: int
 def test_moving_never_raises_the_error(n_components: int, seed: int) -> None:
     image = noise(40, 50, n_components, seed)
     surface = surface_on(image, 24, seed)
-    room = room_for(image)
+    work = room_for(image)
     before = surface.errors.sum()
     for _ in range(6):
-        moved = relocate(surface, image, room, np.arange(len(surface.points)))
+        moved = relocate(surface, image, work, np.arange(len(surface.points)))
         after = surface.errors.sum()
         assert after <= before
         before = after
@@ -392,13 +392,13 @@ def test_moving_never_raises_the_error(n_components: int, seed: int) -> None:
 def test_vertices_come_to_rest_when_nothing_around_them_changes() -> None:
     image = step_edge(40, 50)
     surface = surface_on(image, 24, 5)
-    room = room_for(image)
+    work = room_for(image)
     for _ in range(100):
-        if not relocate(surface, image, room, np.arange(len(surface.points))):
+        if not relocate(surface, image, work, np.arange(len(surface.points))):
             break
-    assert not surface.restless[surface.leaving >= 0].all()
+    assert not surface.dirty[surface.leaving >= 0].all()
     points = surface.points.copy()
-    assert relocate(surface, image, room, np.arange(len(surface.points))) == 0
+    assert relocate(surface, image, work, np.arange(len(surface.points))) == 0
     assert np.array_equal(surface.points, points)
 
 
@@ -443,11 +443,11 @@ def flip_gains(surface: Surface, image: UInt8Array) -> list[float]:
 def test_flips_lower_the_error_until_none_is_left_that_would(seed: int) -> None:
     image = noise(30, 40, 3, seed)
     surface = surface_on(image, 16, seed)
-    room = room_for(image)
+    work = room_for(image)
     assert max(flip_gains(surface, image)) > 0
     before = surface.errors.sum()
     for _ in range(50):
-        flipped = flip_edges(surface, image, room, 0.0)
+        flipped = flip_edges(surface, image, work, 0.0)
         check_surface(surface, 40, 30)
         check_errors(surface, image)
         if not flipped:
@@ -462,7 +462,7 @@ def test_flips_lower_the_error_until_none_is_left_that_would(seed: int) -> None:
 def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
     image = noise(30, 40, 3, seed)
     free, charged, dear = (surface_on(image, 16, seed) for _ in range(3))
-    room = room_for(image)
+    work = room_for(image)
     implied = {tuple(face) for face in triangles_of(dear).tolist()}
     charge = 0.5 * max(flip_gains(dear, image))
     counts = []
@@ -470,7 +470,7 @@ def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
         n_flipped = 0
         for _ in range(50):
             before = surface.errors.sum()
-            flipped = flip_edges(surface, image, room, price)
+            flipped = flip_edges(surface, image, work, price)
             n_flipped += flipped
             if not flipped:
                 break
@@ -484,11 +484,11 @@ def test_a_high_charge_leads_back_to_the_delaunay_triangles() -> None:
     image = noise(30, 40, 3)
     surface = surface_on(image, 16, 1)
     implied = {frozenset(face) for face in triangles_of(surface).tolist()}
-    room = room_for(image)
-    while flip_edges(surface, image, room, 0.0):
+    work = room_for(image)
+    while flip_edges(surface, image, work, 0.0):
         pass
     assert {frozenset(face) for face in triangles_of(surface).tolist()} != implied
-    while flip_edges(surface, image, room, 1e12):
+    while flip_edges(surface, image, work, 1e12):
         check_surface(surface, 40, 30)
     assert {frozenset(face) for face in triangles_of(surface).tolist()} == implied
 
@@ -507,18 +507,18 @@ def test_a_surface_stays_sound_whatever_is_done_to_it(picture: UInt8Array, seed:
     vertices = np.array(sites, dtype=np.int32)
     colors = random_colors(len(sites), n_components, seed)
     surface = open_surface(image, vertices, colors, n_spare=6)
-    room = room_for(image)
+    work = room_for(image)
     for edit in random.integers(4, size=8):
         if edit == 0:
             remove(surface, image, int(random.integers(1, 6)), np.inf)
         elif edit == 1:
             gains, places = proposals(surface, image)
             order = np.argsort(-gains, kind="stable")
-            insert(surface, image, room, order[gains[order] > 0], gains, places, 4)
+            insert(surface, image, work, order[gains[order] > 0], gains, places, 4)
         elif edit == 2:
-            relocate(surface, image, room, np.arange(len(surface.points)))
+            relocate(surface, image, work, np.arange(len(surface.points)))
         else:
-            flip_edges(surface, image, room, float(random.choice([0.0, 1e3])))
+            flip_edges(surface, image, work, float(random.choice([0.0, 1e3])))
         check_surface(surface, width, height)
     check_errors(surface, image)
 

@@ -16,11 +16,11 @@ from vmesh.encoder.waves import Run, run_here, shares, waves
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.kernels.remeshing import (
-    Room,
     Surface,
+    Workspace,
     flip_edges,
     insert,
-    make_room,
+    make_workspace,
     measure,
     propose_insertions,
     relocate,
@@ -95,7 +95,7 @@ class Remesher:
         # Colours count as much as they can be seen: all components, alpha among them, alike.
         self._picture = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
         self._weights = np.ones(image.shape[:2])
-        self._room = self._make_room()
+        self._workspace = self._make_workspace()
         colors = sample_colors(self._picture, vertices, UNIT)
         self._surface = _open_surface(vertices.astype(np.int64), colors, delaunay(vertices), 0)
         self.n_proposed = self.n_vertices = len(vertices)
@@ -199,7 +199,7 @@ class Remesher:
         """Move vertices and flip edges to where the error is least."""
         self._relocate()
         charge = _FLIP_BITS * price_of(self)
-        flip_edges(self._surface, self._picture, self._room, charge)
+        flip_edges(self._surface, self._picture, self._workspace, charge)
         self._refit()
 
     def geometry(self) -> tuple[Int32Array, Int32Array]:
@@ -219,10 +219,10 @@ class Remesher:
         costs = np.empty(len(surface.points))
         self._share_out(
             len(costs),
-            lambda room, first, last: weigh(surface, picture, room, first, last, costs),
+            lambda work, first, last: weigh(surface, picture, work, first, last, costs),
         )
         factors = 1.0 + chance * self._random.random(len(costs))
-        removed = thin(surface, picture, self._room, costs, factors, n_remove, max_cost)
+        removed = thin(surface, picture, self._workspace, costs, factors, n_remove, max_cost)
         self.n_vertices -= removed
         return removed
 
@@ -238,13 +238,14 @@ class Remesher:
                     break
                 self._share_out(
                     len(gains),
-                    lambda room, first, last: propose_insertions(
-                        surface, picture, room, first, last, gains, places
+                    lambda work, first, last: propose_insertions(
+                        surface, picture, work, first, last, gains, places
                     ),
                 )
                 order = np.argsort(-gains, kind="stable")
                 useful = order[gains[order] > least_gain]
-                inserted = insert(surface, picture, self._room, useful, gains, places, n_insert)
+                work = self._workspace
+                inserted = insert(surface, picture, work, useful, gains, places, n_insert)
                 if inserted == 0:
                     break
                 n_insert -= inserted
@@ -265,7 +266,7 @@ class Remesher:
         )
         self._share_out(
             len(surface.errors),
-            lambda room, first, last: measure(surface, self._picture, room, first, last),
+            lambda work, first, last: measure(surface, self._picture, work, first, last),
         )
         self.error = float(surface.errors.sum())
 
@@ -273,22 +274,24 @@ class Remesher:
         """Move all vertices that something changed around to better places."""
         surface, picture = self._surface, self._picture
         for groups in waves(surface.points, surface.origin.reshape(-1, 3)):
-            self._do(lambda group: relocate(surface, picture, self._make_room(), group), groups)
+            self._do(
+                lambda group: relocate(surface, picture, self._make_workspace(), group), groups
+            )
 
-    def _share_out(self, n_items: int, job: Callable[[Room, int, int], None]) -> None:
-        """Do a job for all items; it is called with each share of them, and room of its own."""
-        self._do(lambda share: job(self._make_room(), *share), shares(n_items))
+    def _share_out(self, n_items: int, job: Callable[[Workspace, int, int], None]) -> None:
+        """Do a job for all items, called with each share of them and a workspace of its own."""
+        self._do(lambda share: job(self._make_workspace(), *share), shares(n_items))
 
     def _do(self, job: Callable[[Any], object], arguments: Iterable[Any]) -> None:
         """Do jobs that do not depend on each other."""
         for _ in self._run(job, arguments):
             pass
 
-    def _make_room(self) -> Room:
-        return make_room(self._picture.shape[0], self._picture.shape[2])
+    def _make_workspace(self) -> Workspace:
+        return make_workspace(self._picture.shape[0], self._picture.shape[2])
 
     def _compact(self, n_spare: int) -> None:
-        """Drop what is not in use, and make room for some more vertices."""
+        """Drop what is not in use, and make place for some more vertices."""
         surface = self._surface
         triangles = surface.origin.reshape(-1, 3)
         alive = triangles[:, 0] >= 0
@@ -299,7 +302,7 @@ class Remesher:
         self._surface = _open_surface(
             surface.points[used], surface.colors[used], rank[triangles], n_spare
         )
-        self._surface.restless[: len(used)] = surface.restless[used]
+        self._surface.dirty[: len(used)] = surface.dirty[used]
         self._surface.errors[: len(triangles)] = surface.errors[alive]
 
 
@@ -309,7 +312,7 @@ def _open_surface(
     triangles: Int32Array,
     n_spare: int,
 ) -> Surface:
-    """A surface with room for some more vertices, its errors not measured yet."""
+    """A surface with place for some more vertices, its errors not measured yet."""
     n_points, n_triangles = len(points), len(triangles)
     n_edges = 3 * n_triangles
     more = 6 * n_spare
@@ -322,5 +325,5 @@ def _open_surface(
         twin=np.concatenate([find_twins(triangles, n_points), np.full(more, -1, dtype=np.int64)]),
         leaving=leaving,
         errors=np.zeros(n_triangles + 2 * n_spare),
-        restless=np.ones(n_points + n_spare, dtype=np.bool_),
+        dirty=np.ones(n_points + n_spare, dtype=np.bool_),
     )

@@ -40,8 +40,8 @@ from vmesh.kernels.predicates import in_circle_float, orient
 MAX_RING = 48
 """A vertex with more neighbours than this is left as it is."""
 
-# A vertex steps at most this many pixels in each direction, to one of the places that promise most,
-# and then on from there.
+# A vertex steps at most this many pixels in each direction, to one of the places with the largest
+# predicted decrease of the error, and then on from there.
 _REACH = 3
 _N_TRIES = 3
 _MAX_STEPS = 8
@@ -73,7 +73,7 @@ class Surface(NamedTuple):
         Shape (n,), int64: a half-edge that leaves each vertex.
     errors : ndarray
         Shape (m,), float64: squared error of each triangle.
-    restless : ndarray
+    dirty : ndarray
         Shape (n,), bool: whether something near the vertex changed since it was last looked at.
     """
 
@@ -83,10 +83,10 @@ class Surface(NamedTuple):
     twin: Int64Array
     leaving: Int64Array
     errors: Float64Array
-    restless: BoolArray
+    dirty: BoolArray
 
 
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """Arrays that the kernels write to on the way: the star of a vertex, its filling, and sums."""
 
     ring: Int64Array
@@ -97,12 +97,12 @@ class Room(NamedTuple):
     rows: Int64Array
     sums: Float64Array
     side_sums: Float64Array
-    promises: Float64Array
+    predictions: Float64Array
 
 
-def make_room(height: int, n_components: int) -> Room:
-    """Room for a picture of this height."""
-    return Room(
+def make_workspace(height: int, n_components: int) -> Workspace:
+    """Workspace for a picture of this height."""
+    return Workspace(
         ring=np.zeros(MAX_RING, np.int64),
         outer=np.zeros(MAX_RING, np.int64),
         star=np.zeros(MAX_RING - 2, np.int64),
@@ -111,7 +111,7 @@ def make_room(height: int, n_components: int) -> Room:
         rows=np.zeros((height, 2), np.int64),
         sums=np.zeros(2 + n_components),
         side_sums=np.zeros((MAX_RING, 2 + n_components)),
-        promises=np.zeros((2 * _REACH + 1, 2 * _REACH + 1)),
+        predictions=np.zeros((2 * _REACH + 1, 2 * _REACH + 1)),
     )
 
 
@@ -169,10 +169,10 @@ def spans(
 
 @inner_kernel
 def triangle_error(
-    surface: Surface, image: UInt8Array, room: Room, a: int, b: int, c: int
+    surface: Surface, image: UInt8Array, work: Workspace, a: int, b: int, c: int
 ) -> float:
     """Squared error of a positive triangle over the pixels whose centres it holds."""
-    points, colors, rows = surface.points, surface.colors, room.rows
+    points, colors, rows = surface.points, surface.colors, work.rows
     ax, ay = points[a, 0], points[a, 1]
     bx, by = points[b, 0] - ax, points[b, 1] - ay
     cx, cy = points[c, 0] - ax, points[c, 1] - ay
@@ -198,15 +198,15 @@ def triangle_error(
 
 @inner_kernel
 def add_moments(
-    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, a: int, b: int
+    surface: Surface, image: UInt8Array, work: Workspace, x: int, y: int, a: int, b: int
 ) -> None:
-    """Add to ``room.sums`` what the best colour of a vertex at (x, y) follows from.
+    """Add to ``work.sums`` what the best colour of a vertex at (x, y) follows from.
 
     In the triangle (x, y), a, b let w be the weight of the vertex at a pixel and r the pixel less
     what a and b contribute: adds the sums of r r (over all components), of w w, and of w r for
     each component. With colour k the squared error is rr - 2 k wr + k k ww; the best is wr / ww.
     """
-    points, colors, rows, sums = surface.points, surface.colors, room.rows, room.sums
+    points, colors, rows, sums = surface.points, surface.colors, work.rows, work.sums
     ax, ay = points[a, 0] - x, points[a, 1] - y
     bx, by = points[b, 0] - x, points[b, 1] - y
     det = ax * by - ay * bx
@@ -239,15 +239,15 @@ def add_moments(
 
 @inner_kernel
 def error_at(
-    surface: Surface, image: UInt8Array, room: Room, x: int, y: int, n_sides: int, limit: float
+    surface: Surface, image: UInt8Array, work: Workspace, x: int, y: int, n_sides: int, limit: float
 ) -> float:
     """Squared error of a star with its centre at (x, y), in the best colour for it.
 
-    The star's rim is ``room.ring``, of which the first `n_sides` sides count; infinite if one of
-    its triangles were not positive, or as soon as the error is more than `limit`. ``room.sums``
-    holds what the colour follows from, ``room.side_sums`` the same of the sides up to each.
+    The star's rim is ``work.ring``, of which the first `n_sides` sides count; infinite if one of
+    its triangles were not positive, or as soon as the error is more than `limit`. ``work.sums``
+    holds what the colour follows from, ``work.side_sums`` the same of the sides up to each.
     """
-    points, ring, sums = surface.points, room.ring, room.sums
+    points, ring, sums = surface.points, work.ring, work.sums
     for i in range(n_sides):
         a, b = ring[i], ring[i + 1]
         ax, ay = points[a, 0] - x, points[a, 1] - y
@@ -257,9 +257,9 @@ def error_at(
         sums[i] = 0.0
     error = 0.0
     for i in range(n_sides):
-        add_moments(surface, image, room, x, y, ring[i], ring[i + 1])
+        add_moments(surface, image, work, x, y, ring[i], ring[i + 1])
         for z in range(sums.shape[0]):
-            room.side_sums[i, z] = sums[z]
+            work.side_sums[i, z] = sums[z]
         # The least error of some triangles is no more than that of all.
         error = sums[0]
         for z in range(image.shape[2]):
@@ -270,19 +270,19 @@ def error_at(
 
 
 @inner_kernel
-def take_color(surface: Surface, room: Room, v: int) -> None:
-    """Give vertex v the best colour by ``room.sums``, if its triangles hold a pixel to tell."""
-    if room.sums[1] > _RIDGE:
+def take_color(surface: Surface, work: Workspace, v: int) -> None:
+    """Give vertex v the best colour by ``work.sums``, if its triangles hold a pixel to tell."""
+    if work.sums[1] > _RIDGE:
         for z in range(surface.colors.shape[1]):
-            surface.colors[v, z] = room.sums[2 + z] / (room.sums[1] + _RIDGE)
+            surface.colors[v, z] = work.sums[2 + z] / (work.sums[1] + _RIDGE)
 
 
 @kernel
-def measure(surface: Surface, image: UInt8Array, room: Room, first: int, last: int) -> None:
+def measure(surface: Surface, image: UInt8Array, work: Workspace, first: int, last: int) -> None:
     """Compute the errors of the triangles from `first` up to `last`, excluded, anew."""
     for t in range(first, last):
         a, b, c = surface.origin[3 * t], surface.origin[3 * t + 1], surface.origin[3 * t + 2]
-        surface.errors[t] = triangle_error(surface, image, room, a, b, c) if a >= 0 else 0.0
+        surface.errors[t] = triangle_error(surface, image, work, a, b, c) if a >= 0 else 0.0
 
 
 # --- Half-edges -----------------------------------------------------------------------------------
@@ -290,20 +290,20 @@ def measure(surface: Surface, image: UInt8Array, room: Room, first: int, last: i
 
 @inner_kernel
 def set_triangle(
-    surface: Surface, image: UInt8Array, room: Room, t: int, a: int, b: int, c: int
+    surface: Surface, image: UInt8Array, work: Workspace, t: int, a: int, b: int, c: int
 ) -> None:
     """Make t the triangle a, b, c."""
     place_triangle(surface.origin, surface.leaving, t, a, b, c)
-    update_triangle(surface, image, room, t, a, b, c)
+    update_triangle(surface, image, work, t, a, b, c)
 
 
 @inner_kernel
 def update_triangle(
-    surface: Surface, image: UInt8Array, room: Room, t: int, a: int, b: int, c: int
+    surface: Surface, image: UInt8Array, work: Workspace, t: int, a: int, b: int, c: int
 ) -> None:
     """Measure triangle t, which became a, b, c, and note that its corners have changed around."""
-    surface.restless[a] = surface.restless[b] = surface.restless[c] = True
-    surface.errors[t] = triangle_error(surface, image, room, a, b, c)
+    surface.dirty[a] = surface.dirty[b] = surface.dirty[c] = True
+    surface.errors[t] = triangle_error(surface, image, work, a, b, c)
 
 
 @inner_kernel
@@ -316,14 +316,14 @@ def free_triangle(surface: Surface, t: int) -> None:
 
 
 @inner_kernel
-def collect_ring(surface: Surface, room: Room, v: int) -> tuple[int, int]:
-    """Neighbours, far half-edges and star of a vertex, into `room`.
+def collect_ring(surface: Surface, work: Workspace, v: int) -> tuple[int, int]:
+    """Neighbours, far half-edges and star of a vertex, into `work`.
 
     Returns the number of neighbours, 0 if they are too many, and the number of triangles, which is
     one less on the border. Inside, the first neighbour is repeated after the last.
     """
     origin, twin, leaving = surface.origin, surface.twin, surface.leaving
-    ring, outer, star = room.ring, room.outer, room.star
+    ring, outer, star = work.ring, work.outer, work.star
     size, n_sides = half_edges.collect_ring(origin, twin, leaving[v], star, ring)
     for i in range(n_sides):
         outer[i] = twin[next_edge(star[i])]
@@ -338,43 +338,43 @@ def collect_ring(surface: Surface, room: Room, v: int) -> tuple[int, int]:
 
 
 @inner_kernel
-def removal_cost(surface: Surface, image: UInt8Array, room: Room, v: int) -> float:
+def removal_cost(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> float:
     """Squared error that the removal of a vertex would add.
 
     Infinite for a corner of the canvas and where the hole cannot be filled.
     """
-    ring, ears = room.ring, room.ears
-    size, n_sides = collect_ring(surface, room, v)
+    ring, ears = work.ring, work.ears
+    size, n_sides = collect_ring(surface, work, v)
     if size < 3:
         return np.inf
     if n_sides < size and orient(surface.points, ring[size - 1], v, ring[0]) != 0:
         return np.inf
-    count = clip_ears(surface.points, ring, size, room.places, ears, False)
+    count = clip_ears(surface.points, ring, size, work.places, ears, False)
     if count < 0:
         return np.inf
     cost = 0.0
     for i in range(n_sides):
-        cost -= surface.errors[room.star[i] // 3]
+        cost -= surface.errors[work.star[i] // 3]
     for i in range(count):
         a, b, c = ring[ears[i, 0]], ring[ears[i, 1]], ring[ears[i, 2]]
-        cost += triangle_error(surface, image, room, a, b, c)
+        cost += triangle_error(surface, image, work, a, b, c)
     return cost
 
 
 @inner_kernel
-def remove(surface: Surface, image: UInt8Array, room: Room, v: int) -> int:
+def remove(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> int:
     """Remove a vertex and fill the hole; the ring keeps its neighbours, whose number is given."""
     points, origin, twin, leaving = surface.points, surface.origin, surface.twin, surface.leaving
-    ring, star, ears = room.ring, room.star, room.ears
-    size, n_sides = collect_ring(surface, room, v)
-    count = clip_ears(points, ring, size, room.places, ears, False)
+    ring, star, ears = work.ring, work.star, work.ears
+    size, n_sides = collect_ring(surface, work, v)
+    count = clip_ears(points, ring, size, work.places, ears, False)
     leaving[v] = -1
     for i in range(count, n_sides):
         free_triangle(surface, star[i] // 3)
-    fill_star(origin, twin, leaving, star, ring, room.outer, ears, count)
+    fill_star(origin, twin, leaving, star, ring, work.outer, ears, count)
     for i in range(count):
         a, b, c = ring[ears[i, 0]], ring[ears[i, 1]], ring[ears[i, 2]]
-        update_triangle(surface, image, room, star[i] // 3, a, b, c)
+        update_triangle(surface, image, work, star[i] // 3, a, b, c)
     return size
 
 
@@ -404,20 +404,20 @@ def sift(heap: Int64Array, place: Int64Array, costs: Float64Array, size: int, at
 
 @kernel
 def weigh(
-    surface: Surface, image: UInt8Array, room: Room, first: int, last: int, costs: Float64Array
+    surface: Surface, image: UInt8Array, work: Workspace, first: int, last: int, costs: Float64Array
 ) -> None:
     """Costs of removing the vertices from `first` up to `last`, which is excluded."""
     for v in range(first, last):
         costs[v] = np.inf
         if surface.leaving[v] >= 0:
-            costs[v] = removal_cost(surface, image, room, v)
+            costs[v] = removal_cost(surface, image, work, v)
 
 
 @kernel
 def thin(
     surface: Surface,
     image: UInt8Array,
-    room: Room,
+    work: Workspace,
     costs: Float64Array,
     factors: Float64Array,
     n_remove: int,
@@ -434,7 +434,7 @@ def thin(
         With errors that are up to date.
     image : ndarray
         Shape (h, w, c), uint8.
-    room : Room
+    work : Workspace
     costs : ndarray
         Shape (n,), float64: as :func:`weigh` finds them; changed.
     factors : ndarray
@@ -462,12 +462,12 @@ def thin(
         v = heap[0]
         if outdated[v]:
             outdated[v] = False
-            costs[v] = factors[v] * removal_cost(surface, image, room, v)
+            costs[v] = factors[v] * removal_cost(surface, image, work, v)
         elif costs[v] == np.inf or costs[v] > max_cost:
             break
         else:
-            for i in range(remove(surface, image, room, v)):
-                outdated[room.ring[i]] = True
+            for i in range(remove(surface, image, work, v)):
+                outdated[work.ring[i]] = True
             removed += 1
             left -= 1
             heap[0] = heap[left]
@@ -481,10 +481,10 @@ def thin(
 
 @inner_kernel
 def worst_pixel(
-    surface: Surface, image: UInt8Array, room: Room, a: int, b: int, c: int
+    surface: Surface, image: UInt8Array, work: Workspace, a: int, b: int, c: int
 ) -> tuple[int, int]:
     """Centre of the pixel of a triangle with the largest error; its first corner if it has none."""
-    points, colors, rows = surface.points, surface.colors, room.rows
+    points, colors, rows = surface.points, surface.colors, work.rows
     ax, ay = points[a, 0], points[a, 1]
     bx, by = points[b, 0] - ax, points[b, 1] - ay
     cx, cy = points[c, 0] - ax, points[c, 1] - ay
@@ -510,10 +510,10 @@ def worst_pixel(
 
 @inner_kernel
 def best_insertion(
-    surface: Surface, image: UInt8Array, room: Room, t: int
+    surface: Surface, image: UInt8Array, work: Workspace, t: int
 ) -> tuple[float, int, int]:
     """What a new vertex in triangle t would gain, and where: its middle or its worst pixel."""
-    points, errors, ring = surface.points, surface.errors, room.ring
+    points, errors, ring = surface.points, surface.errors, work.ring
     for i in range(4):
         ring[i] = surface.origin[3 * t + i % 3]
     best, best_x, best_y = -np.inf, 0, 0
@@ -523,8 +523,8 @@ def best_insertion(
             x = (points[ring[0], 0] + points[ring[1], 0] + points[ring[2], 0]) // 6 * 2 + 1
             y = (points[ring[0], 1] + points[ring[1], 1] + points[ring[2], 1]) // 6 * 2 + 1
         else:
-            x, y = worst_pixel(surface, image, room, ring[0], ring[1], ring[2])
-        gain = errors[t] - error_at(surface, image, room, x, y, _N_SIDES, errors[t] - best)
+            x, y = worst_pixel(surface, image, work, ring[0], ring[1], ring[2])
+        gain = errors[t] - error_at(surface, image, work, x, y, _N_SIDES, errors[t] - best)
         if gain > best:
             best, best_x, best_y = gain, x, y
     return best, best_x, best_y
@@ -532,15 +532,15 @@ def best_insertion(
 
 @inner_kernel
 def split(
-    surface: Surface, image: UInt8Array, room: Room, t: int, v: int, second: int, third: int
+    surface: Surface, image: UInt8Array, work: Workspace, t: int, v: int, second: int, third: int
 ) -> None:
     """Split triangle t at vertex v; `second` and `third` are triangles that are not in use."""
     origin, twin = surface.origin, surface.twin
     a, b, c = origin[3 * t], origin[3 * t + 1], origin[3 * t + 2]
     far_b, far_c = twin[3 * t + 1], twin[3 * t + 2]
-    set_triangle(surface, image, room, t, a, b, v)
-    set_triangle(surface, image, room, second, b, c, v)
-    set_triangle(surface, image, room, third, c, a, v)
+    set_triangle(surface, image, work, t, a, b, v)
+    set_triangle(surface, image, work, second, b, c, v)
+    set_triangle(surface, image, work, third, c, a, v)
     link(twin, 3 * second, far_b)
     link(twin, 3 * third, far_c)
     link(twin, 3 * t + 1, 3 * second + 2)
@@ -552,7 +552,7 @@ def split(
 def propose_insertions(
     surface: Surface,
     image: UInt8Array,
-    room: Room,
+    work: Workspace,
     first: int,
     last: int,
     gains: Float64Array,
@@ -565,7 +565,7 @@ def propose_insertions(
     surface : Surface
     image : ndarray
         Shape (h, w, c), uint8.
-    room : Room
+    work : Workspace
     first, last : int
         The triangles: `last` is excluded.
     gains : ndarray
@@ -577,14 +577,14 @@ def propose_insertions(
         if surface.origin[3 * t] < 0:
             gains[t] = -np.inf
         elif math.isnan(gains[t]):
-            gains[t], places[t, 0], places[t, 1] = best_insertion(surface, image, room, t)
+            gains[t], places[t, 0], places[t, 1] = best_insertion(surface, image, work, t)
 
 
 @kernel
 def insert(
     surface: Surface,
     image: UInt8Array,
-    room: Room,
+    work: Workspace,
     order: Int64Array,
     gains: Float64Array,
     places: Int64Array,
@@ -599,7 +599,7 @@ def insert(
     surface : Surface
     image : ndarray
         Shape (h, w, c), uint8.
-    room : Room
+    work : Workspace
     order : ndarray
         Shape (k,), int64: triangles in use, the best first.
     gains : ndarray
@@ -631,13 +631,13 @@ def insert(
             if surface.twin[e] >= 0:
                 changed[surface.twin[e] // 3] = True
         for k in range(4):
-            room.ring[k] = surface.origin[3 * t + k % 3]
+            work.ring[k] = surface.origin[3 * t + k % 3]
         surface.points[v, 0], surface.points[v, 1] = places[t, 0], places[t, 1]
-        error_at(surface, image, room, places[t, 0], places[t, 1], _N_SIDES, np.inf)
+        error_at(surface, image, work, places[t, 0], places[t, 1], _N_SIDES, np.inf)
         for z in range(surface.colors.shape[1]):
-            surface.colors[v, z] = surface.colors[room.ring[0], z]
-        take_color(surface, room, v)
-        split(surface, image, room, t, v, free_triangles[0], free_triangles[1])
+            surface.colors[v, z] = surface.colors[work.ring[0], z]
+        take_color(surface, work, v)
+        split(surface, image, work, t, v, free_triangles[0], free_triangles[1])
         gains[t] = gains[free_triangles[0]] = gains[free_triangles[1]] = np.nan
         inserted += 1
     return inserted
@@ -653,8 +653,10 @@ def may_step(x: int, dx: int, far: int) -> bool:
 
 
 @inner_kernel
-def promise(surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: int) -> None:
-    """What a step of vertex v would change the error of its star by, into ``room.promises``.
+def predict_step(
+    surface: Surface, image: UInt8Array, work: Workspace, v: int, n_sides: int
+) -> None:
+    """What a step of vertex v would change the error of its star by, into ``work.predictions``.
 
     From the sums that :func:`error_at` left for the place where the vertex is. Where its triangles
     have gradients g and a step d takes it away with its colour k, a pixel with weight w changes by
@@ -665,7 +667,7 @@ def promise(surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: in
     a step of Gauss and Newton's method, of which any whole step is taken and not only the best:
     the picture is not as smooth as that.
     """
-    points, colors, ring, side_sums = surface.points, surface.colors, room.ring, room.side_sums
+    points, colors, ring, side_sums = surface.points, surface.colors, work.ring, work.side_sums
     b_x = b_y = h_xx = h_xy = h_yy = 0.0
     for z in range(colors.shape[1]):
         color = colors[v, z]
@@ -695,89 +697,90 @@ def promise(surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: in
         h_yy -= mean_y * mean_y * share
     width, height = 2 * image.shape[1], 2 * image.shape[0]
     x, y = points[v, 0], points[v, 1]
-    for i in range(room.promises.shape[0]):
+    for i in range(work.predictions.shape[0]):
         dy = 2 * (i - _REACH)
-        for k in range(room.promises.shape[1]):
+        for k in range(work.predictions.shape[1]):
             dx = 2 * (k - _REACH)
-            room.promises[i, k] = np.inf
+            work.predictions[i, k] = np.inf
             if may_step(x, dx, width) and may_step(y, dy, height):
                 change = 2.0 * (b_x * dx + b_y * dy)
                 change += h_xx * dx * dx + 2.0 * h_xy * dx * dy + h_yy * dy * dy
-                room.promises[i, k] = change
-    room.promises[_REACH, _REACH] = np.inf
+                work.predictions[i, k] = change
+    work.predictions[_REACH, _REACH] = np.inf
 
 
 @inner_kernel
 def step(
-    surface: Surface, image: UInt8Array, room: Room, v: int, n_sides: int, least: float
+    surface: Surface, image: UInt8Array, work: Workspace, v: int, n_sides: int, least: float
 ) -> float:
-    """Move vertex v to the first better one of the places that promise most; the error there.
+    """Error after vertex v was moved to a better one of the places that are predicted to be best.
 
-    If none is better, the vertex stays and the error is `least`, what it was.
+    The first that is better, by the predicted decrease. If none is, the vertex stays and the error
+    is `least`, what it was.
     """
-    points, promises = surface.points, room.promises
-    promise(surface, image, room, v, n_sides)
+    points, predictions = surface.points, work.predictions
+    predict_step(surface, image, work, v, n_sides)
     for _ in range(_N_TRIES):
         i, k = 0, 0
-        for row in range(promises.shape[0]):
-            for column in range(promises.shape[1]):
-                if promises[row, column] < promises[i, k]:
+        for row in range(predictions.shape[0]):
+            for column in range(predictions.shape[1]):
+                if predictions[row, column] < predictions[i, k]:
                     i, k = row, column
-        if promises[i, k] == np.inf:
+        if predictions[i, k] == np.inf:
             break
-        promises[i, k] = np.inf
+        predictions[i, k] = np.inf
         x, y = points[v, 0] + 2 * (k - _REACH), points[v, 1] + 2 * (i - _REACH)
-        error = error_at(surface, image, room, x, y, n_sides, least - _LEAST_GAIN)
+        error = error_at(surface, image, work, x, y, n_sides, least - _LEAST_GAIN)
         if error < np.inf:
             points[v, 0], points[v, 1] = x, y
-            take_color(surface, room, v)
+            take_color(surface, work, v)
             return error
     return least
 
 
 @kernel
-def relocate(surface: Surface, image: UInt8Array, room: Room, vertices: Int64Array) -> int:
-    """Move each restless vertex of some to better places nearby, step by step; how many moved.
+def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int64Array) -> int:
+    """Move each dirty vertex of some to better places nearby, step by step; how many moved.
 
     The error of a place is that of the star in the best colour for it. Vertices on the border stay
     on their side, corners where they are. Of what is around a vertex its triangles' errors are
-    written, and that the neighbours are restless; so vertices without a common edge can be moved
+    written, and that the neighbours are dirty; so vertices without a common edge can be moved
     at the same time.
     """
-    points, leaving, restless = surface.points, surface.leaving, surface.restless
+    points, leaving, dirty = surface.points, surface.leaving, surface.dirty
     right, bottom = 2 * image.shape[1], 2 * image.shape[0]
     moved = 0
     for v in vertices:
-        if leaving[v] < 0 or not restless[v]:
+        if leaving[v] < 0 or not dirty[v]:
             continue
-        restless[v] = False
+        dirty[v] = False
         x, y = points[v, 0], points[v, 1]
         if x in (0, right) and y in (0, bottom):
             continue
-        size, n_sides = collect_ring(surface, room, v)
+        size, n_sides = collect_ring(surface, work, v)
         if size < 3:
             continue
-        least = error_at(surface, image, room, x, y, n_sides, np.inf)
-        take_color(surface, room, v)
+        least = error_at(surface, image, work, x, y, n_sides, np.inf)
+        take_color(surface, work, v)
         for _ in range(_MAX_STEPS):
-            error = step(surface, image, room, v, n_sides, least)
+            error = step(surface, image, work, v, n_sides, least)
             if error == least:
                 break
             least = error
         if x != points[v, 0] or y != points[v, 1]:
             moved += 1
-            restless[v] = True
+            dirty[v] = True
             for i in range(size):
-                restless[room.ring[i]] = True
+                dirty[work.ring[i]] = True
         for i in range(n_sides):
-            surface.errors[room.star[i] // 3] = triangle_error(
-                surface, image, room, v, room.ring[i], room.ring[i + 1]
+            surface.errors[work.star[i] // 3] = triangle_error(
+                surface, image, work, v, work.ring[i], work.ring[i + 1]
             )
     return moved
 
 
 @kernel
-def flip_edges(surface: Surface, image: UInt8Array, room: Room, charge: float) -> int:
+def flip_edges(surface: Surface, image: UInt8Array, work: Workspace, charge: float) -> int:
     """Flip each edge once if that lowers the error; how many were flipped.
 
     An edge that is not Delaunay is charged with what it costs to code it.
@@ -792,19 +795,19 @@ def flip_edges(surface: Surface, image: UInt8Array, room: Room, charge: float) -
         b, c, a, d = origin[e], origin[f], origin[previous_edge(e)], origin[previous_edge(f)]
         if orient(points, a, d, c) <= 0 or orient(points, d, a, b) <= 0:
             continue
-        first = triangle_error(surface, image, room, a, d, c)
+        first = triangle_error(surface, image, work, a, d, c)
         gain = errors[e // 3] + errors[f // 3] - first
         gain += -charge if not in_circle_float(points, b, c, a, d) else charge
         if gain <= _LEAST_GAIN:
             continue
-        gain -= triangle_error(surface, image, room, d, a, b)
+        gain -= triangle_error(surface, image, work, d, a, b)
         if gain <= _LEAST_GAIN:
             continue
         far_ca, far_ab = twin[next_edge(e)], twin[previous_edge(e)]
         far_bd, far_dc = twin[next_edge(f)], twin[previous_edge(f)]
         t, u = e // 3, f // 3
-        set_triangle(surface, image, room, t, a, d, c)
-        set_triangle(surface, image, room, u, d, a, b)
+        set_triangle(surface, image, work, t, a, d, c)
+        set_triangle(surface, image, work, u, d, a, b)
         link(twin, 3 * t, 3 * u)
         link(twin, 3 * t + 1, far_dc)
         link(twin, 3 * t + 2, far_ca)
