@@ -177,17 +177,17 @@ def range_coded(bits: Iterable[tuple[int, int]], n_contexts: int) -> bytes:
 
     The carry needs no care here: `low` is the whole number written so far.
     """
-    odds = [[1 << 15, 0] for _ in range(n_contexts)]
+    model = [[1 << 15, 0] for _ in range(n_contexts)]
     low, span, n_bytes = 0, 2**32, 4
     for context, bit in bits:
-        probability, seen = odds[context]
+        probability, seen = model[context]
         split = (span >> 12) * (probability >> 4)
         if bit:
             span = split
         else:
             low, span = low + split, span - split
         moved = probability + (65536 * bit - probability) // (seen + 2)
-        odds[context] = [min(max(moved, 64), 65472), min(seen + 1, 250)]
+        model[context] = [min(max(moved, 64), 65472), min(seen + 1, 250)]
         while span < 2**24:
             low, span, n_bytes = low << 8, span << 8, n_bytes + 1
     # Of the numbers in the final range, the one that ends in the most zero bits.

@@ -33,7 +33,7 @@ from vmesh.codec.reader import loads, measure
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError, LimitError, VmeshError
-from vmesh.kernels import entropy
+from vmesh.kernels.coding import range_coder, triangle_list
 from vmesh.kernels.delaunay import delaunay
 from vmesh.limits import MAX_SIDE, Limits
 from vmesh.mesh import Mesh
@@ -370,12 +370,12 @@ def listing(triangles: Int32Array) -> Callable[[Encoder], None]:
     """What writes a list of triangles, in whatever order, first vertices ascending."""
 
     def write(encoder: Encoder) -> None:
-        odds = entropy.even_odds(3 * entropy.NUMBER_CONTEXTS)
+        model = range_coder.even_model(3 * triangle_list.NUMBER_CONTEXTS)
         first = 0
         for a, b, c in triangles.tolist():
             for i, number in enumerate((a - first, b - a - 1, c - a - 1)):
-                context = i * entropy.NUMBER_CONTEXTS
-                entropy.code_number(encoder.coder, encoder.data, odds, context, number)
+                context = i * triangle_list.NUMBER_CONTEXTS
+                triangle_list.code_number(encoder.coder, encoder.data, model, context, number)
             first = a
 
     return write
@@ -400,9 +400,9 @@ def test_triangles_that_overlap_or_are_out_of_order_are_rejected() -> None:
 
 def ones(encoder: Encoder) -> None:
     """Write bits after which a stream of zeros is read as nothing but ones."""
-    odds = entropy.even_odds(64)
+    model = range_coder.even_model(64)
     for context in range(64):
-        entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+        range_coder.code_bit(encoder.coder, encoder.data, model, context, 1)
 
 
 def test_more_flips_than_allowed_are_refused_and_do_not_go_on_for_ever() -> None:
@@ -465,7 +465,7 @@ def test_a_huge_count_is_refused_before_anything_is_allocated() -> None:
 
 
 def test_the_densest_mesh_is_as_large_as_its_bytes_can_hold() -> None:
-    # All sites of the lattice and one colour: no bits for positions, the longest odds for levels.
+    # All sites of the lattice and one colour: no bits for positions, hardly any for levels.
     y, x = np.mgrid[:401, :401]
     vertices = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int32)
     levels = np.zeros((len(vertices), 1), dtype=np.int32)

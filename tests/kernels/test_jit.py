@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from numba import njit
@@ -39,6 +41,22 @@ def run(cache: Path) -> list[str]:
 
 
 def test_the_first_run_announces_that_it_compiles_and_the_second_does_not(tmp_path: Path) -> None:
+    assert run(tmp_path) == ["compiling", "done"]
+    assert run(tmp_path) == ["done"]
+
+
+GONE = pickle.dumps(numba.__version__) + b"cvmesh\nwhat_is_gone\n."
+
+
+@pytest.mark.parametrize(
+    ("ending", "damaged"), [(".nbi", b""), (".nbi", GONE), (".nbc", b"no code"), (".nbc", GONE)]
+)
+def test_a_damaged_or_foreign_cache_is_written_anew(
+    tmp_path: Path, ending: str, damaged: bytes
+) -> None:
+    run(tmp_path)
+    for path in tmp_path.rglob(f"*{ending}"):
+        path.write_bytes(damaged)
     assert run(tmp_path) == ["compiling", "done"]
     assert run(tmp_path) == ["done"]
 

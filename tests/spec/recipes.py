@@ -25,7 +25,7 @@ from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.mesh_coder import Encoder, encode
 from vmesh.codec.reader import measure
-from vmesh.kernels import entropy
+from vmesh.kernels.coding import range_coder
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
@@ -261,9 +261,9 @@ def flipped_for_ever(mesh: Mesh) -> bytes:
 
     def write(encoder: Encoder) -> None:
         without_triangles(encoder, mesh)
-        odds = entropy.even_odds(64)
+        model = range_coder.even_model(64)
         for context in range(64):  # Zeros that follow many ones are read as ones.
-            entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+            range_coder.code_bit(encoder.coder, encoder.data, model, context, 1)
 
     header, _ = split(with_header(vmesh.dumps(mesh), connectivity=2))
     return file_of(header, [(b"M", encode(write) + bytes(400))])

@@ -37,7 +37,7 @@ from vmesh.codec import layout
 from vmesh.codec.hierarchy import Hierarchy
 from vmesh.codec.mesh_coder import Decoder, Encoder, encode
 from vmesh.color_lattice import ColorLattice
-from vmesh.kernels import entropy
+from vmesh.kernels.coding import colors, flips, positions, range_coder, triangle_list
 from vmesh.kernels.scanline import SUBPIXEL, cover
 from vmesh.limits import MAX_DEPTH, MAX_LATTICE_SIDE, MAX_SIDE, MAX_SUBDIVISION, MAX_TILE_SIDE
 from vmesh.mesh import Mesh, Metadata
@@ -162,14 +162,14 @@ def test_the_encoder_of_the_specification_writes_the_bytes_of_the_library() -> N
     bits = (random.random(3000) < np.array([0.5, 0.99, 0.01, 0.9, 0.0])[contexts]).tolist()
     by_specification = SPEC["RangeEncoder"]()
     starts = [None, 2048, 63488, 43690, None]
-    odds = entropy.even_odds(5)
+    model = range_coder.even_model(5)
     for context, start in enumerate(starts):
         if start:
-            odds[context] = start, entropy.SPLIT_SEEN
+            model[context] = start, positions.SPLIT_SEEN
 
     def write(encoder: Encoder) -> None:
         for context, bit in zip(contexts, bits, strict=True):
-            entropy.code_bit(encoder.coder, encoder.data, odds, context, int(bit))
+            range_coder.code_bit(encoder.coder, encoder.data, model, context, int(bit))
 
     for context, bit in zip(contexts, bits, strict=True):
         by_specification.bit(int(bit), context, start=starts[context])
@@ -315,11 +315,11 @@ def test_means_on_the_thresholds_lean_the_same_way_by_specification_and_library(
 def test_both_encoders_cut_no_more_than_four_zeros() -> None:
     # Ones keep the low end of the interval at 0; a hundred halvings shift it by twelve bytes.
     by_specification = SPEC["RangeEncoder"]()
-    odds = entropy.even_odds(100)
+    model = range_coder.even_model(100)
 
     def write(encoder: Encoder) -> None:
         for context in range(100):
-            entropy.code_bit(encoder.coder, encoder.data, odds, context, 1)
+            range_coder.code_bit(encoder.coder, encoder.data, model, context, 1)
 
     for context in range(100):
         by_specification.bit(1, context)
@@ -527,7 +527,7 @@ def test_the_examples_of_the_frame_are_as_stated() -> None:
     assert len(layout.pack_file(header, [(b"M", bytes(length))])) - length == frame
 
 
-def test_the_levels_that_a_byte_may_hold_are_as_many_as_the_odds_allow() -> None:
+def test_the_levels_that_a_byte_may_hold_are_as_many_as_the_probabilities_allow() -> None:
     least = min(-np.log2(1 - 64 / 65536), -np.log2(65472 / 65536))
     stated = re.search(r"no bit takes less than ([\d.]+) bits", section(4))
     assert stated
@@ -540,28 +540,28 @@ def test_the_contexts_are_as_many_as_stated() -> None:
     stated = {part: whole(text) for part, text in table(section(5), "Part")}
 
     assert stated == {
-        "positions": entropy.SPLIT_CONTEXTS,
-        "colours": entropy.COMPONENT_CONTEXTS,
-        "flipped triangles": entropy.FLIP_CONTEXTS,
-        "listed triangles": 3 * entropy.NUMBER_CONTEXTS,
+        "positions": positions.SPLIT_CONTEXTS,
+        "colours": colors.COMPONENT_CONTEXTS,
+        "flipped triangles": flips.FLIP_CONTEXTS,
+        "listed triangles": 3 * triangle_list.NUMBER_CONTEXTS,
     }
 
 
-def test_the_odds_at_the_start_are_as_stated() -> None:
-    odds = entropy.split_odds()
+def test_the_probabilities_at_the_start_are_as_stated() -> None:
+    model = positions.initial_split_model()
     for count, stated in table(section(6), "Count"):
         shares = [int(share) for share in stated.split(", ")]
         assert shares == [SPEC["binomial_share"](int(count), i) for i in range(int(count))]
-        for area in range(entropy.N_AREA_CLASSES):
-            first = (area * entropy.N_SMALL + int(count)) * entropy.N_SMALL
-            own = odds[first : first + int(count)]
+        for area in range(positions.N_AREA_CLASSES):
+            first = (area * positions.N_SMALL + int(count)) * positions.N_SMALL
+            own = model[first : first + int(count)]
             assert own[:, 0].tolist() == ([2048] * int(count) if area < 2 else shares)
             assert set(own[:, 1].tolist()) == {16}
-    assert len(table(section(6), "Count")) == entropy.N_SMALL - 1
-    assert SPEC["SPREADS"] == entropy.SPREADS
-    assert SPEC["ANGLES"] == entropy.ANGLES
-    assert tuple(map(tuple, SPEC["MORE_THAN"])) == entropy.LEVEL_PRIORS
-    assert np.ravel(SPEC["FLIPPED"]).tolist() == list(entropy.FLIP_PRIORS)
+    assert len(table(section(6), "Count")) == positions.N_SMALL - 1
+    assert SPEC["SPREADS"] == colors.SPREADS
+    assert SPEC["ANGLES"] == flips.ANGLES
+    assert tuple(map(tuple, SPEC["MORE_THAN"])) == colors.LEVEL_PRIORS
+    assert np.ravel(SPEC["FLIPPED"]).tolist() == list(flips.FLIP_PRIORS)
 
 
 def test_no_number_is_larger_than_stated() -> None:
@@ -625,7 +625,7 @@ def test_the_limits_are_as_stated() -> None:
         "bits of a sample": MAX_DEPTH,
         "colour step": (1 << MAX_DEPTH) - 1,
         "side of a tile": MAX_TILE_SIDE,
-        "coded flips for each half-edge": entropy.MAX_FLIPS,
+        "coded flips for each half-edge": flips.MAX_FLIPS,
         "bytes in a chunk": 2**31 - 1,
     }
 

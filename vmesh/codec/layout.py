@@ -65,8 +65,8 @@ _DEEP: Final = 1  # in place of the components: they follow, with the depth
 _CHECKSUM = struct.Struct("<I")
 _TAG_PATTERN = re.compile(rb"[A-Za-z]")
 _MAX_VARINT: Final = (1 << 31) - 1
-# A level takes a bit at least, and a bit at the longest odds 0.0014 bits of the stream: 5,678 to a
-# byte. What the stream holds at its end is at most a byte more than its bytes. So this refuses a
+# A level takes a bit at least, and a bit that was most probable 0.0014 bits of the stream: 5,678 to
+# a byte. What the stream holds at its end is at most a byte more than its bytes. So this refuses a
 # small file that claims a huge mesh before it is decoded, and never one that could be.
 _LEVELS_PER_BYTE: Final = 5_700
 

@@ -14,7 +14,12 @@ from vmesh.codec.hierarchy import Hierarchy, build_hierarchy, find_corners
 from vmesh.codec.layout import FLIPPED_TRIANGLES, LISTED_TRIANGLES, Chunk, Header
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
-from vmesh.kernels import entropy
+from vmesh.kernels.coding import range_coder
+from vmesh.kernels.coding.colors import code_levels, initial_level_model
+from vmesh.kernels.coding.flips import MAX_FLIPS, code_flips, initial_flip_model
+from vmesh.kernels.coding.positions import code_positions, initial_split_model
+from vmesh.kernels.coding.range_coder import OK, even_model
+from vmesh.kernels.coding.triangle_list import NUMBER_CONTEXTS, code_triangles
 from vmesh.kernels.delaunay import delaunay, flip_to_delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.mesh import Mesh, raster_keys
@@ -25,8 +30,8 @@ _CUT_BYTES: Final = 4
 # Flips for each vertex, beyond which a list of the triangles is the shorter way.
 _MAX_FLIPS: Final = 4
 # To set them up takes longer than to read a small file: copies of them are used.
-_split_odds = cache(entropy.split_odds)
-_level_odds = cache(entropy.level_odds)
+_split_model = cache(initial_split_model)
+_level_model = cache(initial_level_model)
 
 
 class Flips(NamedTuple):
@@ -51,7 +56,7 @@ def find_flips(mesh: Mesh) -> Flips | None:
     triangles = mesh.triangles.copy()
     origin = triangles.ravel()
     twins = find_twins(triangles, mesh.n_vertices)
-    room = min(_MAX_FLIPS * mesh.n_vertices, entropy.MAX_FLIPS * origin.size)
+    room = min(_MAX_FLIPS * mesh.n_vertices, MAX_FLIPS * origin.size)
     created, removed = np.zeros((2, room), dtype=np.int64)
     count = flip_to_delaunay(mesh.vertices.astype(np.int64), origin, twins, created, removed)
     if count < 0:
@@ -128,9 +133,9 @@ class Encoder:
     """
 
     def __init__(self, room: int) -> None:
-        self.coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
+        self.coder = np.zeros(range_coder.N_FIELDS, dtype=np.int64)
         self.data = np.zeros(room, dtype=np.uint8)
-        entropy.start(self.coder, self.data, 0)
+        range_coder.start(self.coder, self.data, 0)
 
     def positions(self, vertices: Int32Array, columns: int, rows: int) -> None:
         """Write distinct vertices of shape (n, 2), int32, in any order."""
@@ -141,29 +146,29 @@ class Encoder:
         """Write triangles of shape (m, 3), int32, in canonical order."""
         own = np.array(triangles, dtype=np.int32)
         status = _code_triangles(self.coder, self.data, own, n_vertices)
-        assert status == entropy.OK, "a checked mesh is always coded"
+        assert status == OK, "a checked mesh is always coded"
 
     def levels(self, levels: Int32Array, hierarchy: Hierarchy, lattice: ColorLattice) -> None:
         """Write levels of shape (n, c), int32, of vertices in raster order."""
         own = np.array(levels, dtype=np.int32)
         status = _code_levels(self.coder, self.data, own, hierarchy, lattice)
-        assert status == entropy.OK, "a checked mesh is always coded"
+        assert status == OK, "a checked mesh is always coded"
 
     def flips(self, flips: Flips, implied: Int32Array, mesh: Mesh) -> None:
         """Write the flips that lead from the Delaunay triangles to those of a mesh."""
         triangles = implied.copy()
         status = _code_flips(self.coder, self.data, mesh.vertices, triangles, mesh.levels, flips)
-        assert status == entropy.OK, "flips that were found are always coded"
+        assert status == OK, "flips that were found are always coded"
 
     def finish(self) -> bytes:
         """What was written, zeros cut off at the end, and cut short where there was no room."""
-        length = entropy.finish(self.coder, self.data)
+        length = range_coder.finish(self.coder, self.data)
         return self.data[: max(length, self.n_bytes - _CUT_BYTES)].tobytes()
 
     @property
     def n_bytes(self) -> int:
         """Number of bytes written so far, whether there was room for them or not."""
-        return int(self.coder[entropy.POSITION])
+        return int(self.coder[range_coder.POSITION])
 
 
 def encode(write: Callable[[Encoder], None]) -> bytes:
@@ -193,14 +198,14 @@ class Decoder:
     """
 
     def __init__(self, content: bytes, offset: int, *, is_whole: bool = True) -> None:
-        self.coder = np.zeros(entropy.N_FIELDS, dtype=np.int64)
+        self.coder = np.zeros(range_coder.N_FIELDS, dtype=np.int64)
         self.data = np.frombuffer(bytearray(content), dtype=np.uint8)
         self.offset = offset
         self.is_whole = is_whole
         self.sizes: dict[str, int] = {}
-        entropy.start(self.coder, self.data, 1)
+        range_coder.start(self.coder, self.data, 1)
         if not is_whole:
-            self.coder[entropy.LIMIT] = len(content)
+            self.coder[range_coder.LIMIT] = len(content)
 
     def positions(self, n: int, columns: int, rows: int) -> Int32Array:
         """Vertices in raster order, shape (n, 2), int32, distinct."""
@@ -231,7 +236,7 @@ class Decoder:
 
     def finish(self) -> dict[str, int]:
         """Bytes of each part, rounded so that they add up to the content, which must end here."""
-        read, length = int(self.coder[entropy.POSITION]), len(self.data)
+        read, length = int(self.coder[range_coder.POSITION]), len(self.data)
         if read < length:
             part = list(self.sizes)[-1]
             unused = f"{length - read} bytes follow the coded {part}"
@@ -241,31 +246,31 @@ class Decoder:
 
     def _end(self, part: str, status: int) -> None:
         """Refuse what was no such part, and note its size."""
-        read, length = int(self.coder[entropy.POSITION]), len(self.data)
+        read, length = int(self.coder[range_coder.POSITION]), len(self.data)
         missing = read - length - (_CUT_BYTES if self.is_whole else 0)
         if missing > 0 and (self.is_whole or part == "positions"):
             raise FormatError(part, f"the mesh ends within the {part}", self.offset + length)
-        if status != entropy.OK:
+        if status != OK:
             where = self.offset + min(read, length)
             raise FormatError(part, f"the coded {part} hold a number out of range", where)
         # What the coder has narrowed its range by since the start is what the parts took so far.
-        so_far = read - log2(self.coder[entropy.RANGE]) / 8
+        so_far = read - log2(self.coder[range_coder.RANGE]) / 8
         self.sizes[part] = min(round(so_far), length) - sum(self.sizes.values())
 
 
 def _code_positions(
     coder: Int64Array, data: UInt8Array, points: Int32Array, columns: int, rows: int
 ) -> int:
-    odds = _split_odds().copy()
-    entropy.code_positions(coder, data, odds, points, columns, rows)
-    return entropy.OK
+    model = _split_model().copy()
+    code_positions(coder, data, model, points, columns, rows)
+    return OK
 
 
 def _code_triangles(
     coder: Int64Array, data: UInt8Array, triangles: Int32Array, n_vertices: int
 ) -> int:
-    odds = entropy.even_odds(3 * entropy.NUMBER_CONTEXTS)
-    return entropy.code_triangles(coder, data, odds, triangles, n_vertices)
+    model = even_model(3 * NUMBER_CONTEXTS)
+    return code_triangles(coder, data, model, triangles, n_vertices)
 
 
 def _code_levels(
@@ -275,8 +280,8 @@ def _code_levels(
     hierarchy: Hierarchy,
     lattice: ColorLattice,
 ) -> int:
-    odds = _level_odds(lattice.n_components).copy()
-    return entropy.code_levels(coder, data, odds, *hierarchy, levels, *lattice.level_bounds())
+    model = _level_model(lattice.n_components).copy()
+    return code_levels(coder, data, model, *hierarchy, levels, *lattice.level_bounds())
 
 
 def _code_flips(
@@ -287,12 +292,12 @@ def _code_flips(
     levels: Int32Array,
     flips: Flips,
 ) -> int:
-    odds = entropy.flip_odds()
+    model = initial_flip_model()
     points = vertices.astype(np.int64)
     twins = find_twins(triangles, len(vertices))
     luma = np.ascontiguousarray(levels[:, 0])
     origin = triangles.reshape(-1)
-    return entropy.code_flips(coder, data, odds, points, luma, origin, twins, *flips)
+    return code_flips(coder, data, model, points, luma, origin, twins, *flips)
 
 
 def _halving_keys(vertices: Int32Array, columns: int, rows: int) -> Int64Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 from numba import njit
 from numba.core import event
+from numba.core.caching import IndexDataCacheFile
 
 if TYPE_CHECKING:
     from numba.core.event import Event
@@ -57,10 +58,38 @@ def _cached(function: Function, options: dict[str, Any]) -> Function:
         return cast("Function", njit(**options)(function))
     kept = getattr(dispatcher, "_cache", None)  # None where Numba is told not to compile.
     if kept is not None:
-        # Numba compares the stamp of the function's own file, but the code of the kernels that it
-        # calls, from whatever file, is part of what is kept.
-        kept._cache_file._source_stamp = (kept._cache_file._source_stamp, _digest_of_sources())
+        stamp = kept._impl.locator.get_source_stamp(), _digest_of_sources()
+        kept._cache_file = _CacheFile(kept.cache_path, kept._impl.filename_base, stamp)
     return cast("Function", dispatcher)
+
+
+class _CacheFile(IndexDataCacheFile):  # type: ignore[misc]
+    """Compiled code on disk that is good for one state of all kernels, and never an obstacle.
+
+    Numba compares the stamp of the function's own file, but the code of the kernels that it calls,
+    from whatever file, is part of what is kept. And it fails at files that are damaged, or name
+    what an earlier version had; here they count as none, and are written anew.
+    """
+
+    def _load_index(self) -> dict[Any, str]:
+        try:
+            index: dict[Any, str] = super()._load_index()
+        except Exception:  # Whatever the unpickling of bytes may raise.
+            return {}
+        return index
+
+    def _load_data(self, name: str) -> tuple[Any, ...]:
+        try:
+            code: tuple[Any, ...] = super()._load_data(name)
+            if not isinstance(code, tuple):
+                raise TypeError(f"expected a tuple, got {code!r}")
+        except Exception as error:
+            raise OSError(f"{name} is no compiled code") from error  # Then Numba compiles.
+        return code
+
+    def save(self, key: Any, data: Any) -> None:
+        with suppress(OSError):
+            super().save(key, data)
 
 
 @cache

@@ -14,7 +14,7 @@ from vmesh.codec.hierarchy import Hierarchy, build_hierarchy
 from vmesh.codec.mesh_coder import Decoder, Encoder, encode, find_flips
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
-from vmesh.kernels import entropy
+from vmesh.kernels.coding import colors, flips, positions, range_coder, triangle_list
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh
 
@@ -24,20 +24,22 @@ Bits = list[tuple[int, int]]
 
 def written(bits: Bits) -> bytes:
     """Bytes of (context, bit) pairs."""
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(N_CONTEXTS)
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(N_CONTEXTS)
     data = np.zeros(len(bits) + 8, np.uint8)
-    entropy.start(coder, data, 0)
+    range_coder.start(coder, data, 0)
     for context, bit in bits:
-        entropy.code_bit(coder, data, odds, context, bit)
-    return data[: entropy.finish(coder, data)].tobytes()
+        range_coder.code_bit(coder, data, model, context, bit)
+    return data[: range_coder.finish(coder, data)].tobytes()
 
 
 def read(data: bytes, contexts: list[int]) -> list[int]:
-    """The bits that are read by the odds of these contexts."""
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(N_CONTEXTS)
+    """The bits that are read by the probabilities of these contexts."""
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(N_CONTEXTS)
     given_bytes = np.frombuffer(bytearray(data), np.uint8)
-    entropy.start(coder, given_bytes, 1)
-    return [entropy.code_bit(coder, given_bytes, odds, context, 0) for context in contexts]
+    range_coder.start(coder, given_bytes, 1)
+    return [range_coder.code_bit(coder, given_bytes, model, context, 0) for context in contexts]
 
 
 def as_bytes(data: bytes) -> UInt8Array:
@@ -59,7 +61,7 @@ def test_bits_come_back(bits: Bits) -> None:
 
 
 @pytest.mark.parametrize("share", [0.0, 0.001, 0.03, 0.3, 0.5, 0.9, 0.999, 1.0])
-def test_long_sequences_of_any_odds_come_back_and_carry_rightly(share: float) -> None:
+def test_long_sequences_of_any_probability_come_back_and_carry_rightly(share: float) -> None:
     random = np.random.default_rng(4)
     contexts = random.integers(0, N_CONTEXTS, 20_000)
     ones = (random.random(20_000) < share).astype(int)
@@ -85,77 +87,81 @@ def test_nothing_takes_no_bytes() -> None:
     assert written([]) == b""
 
 
-def test_odds_stay_within_their_bounds() -> None:
+def test_probabilities_stay_within_their_bounds() -> None:
     for bit in (0, 1):
-        coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(1)
+        coder = np.zeros(range_coder.N_FIELDS, np.int64)
+        model = range_coder.even_model(1)
         data = np.zeros(4096, np.uint8)
-        entropy.start(coder, data, 0)
+        range_coder.start(coder, data, 0)
         for _ in range(20_000):
-            entropy.code_bit(coder, data, odds, 0, bit)
-        probability, seen = odds[0].tolist()
+            range_coder.code_bit(coder, data, model, 0, bit)
+        probability, seen = model[0].tolist()
         assert 64 <= probability <= 65472
-        assert seen == entropy.RATE_LIMIT
+        assert seen == range_coder.RATE_LIMIT
 
 
 @given(st.lists(st.integers(0, 2**31 - 2), max_size=60))
 def test_numbers_come_back(numbers: list[int]) -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.NUMBER_CONTEXTS)
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(triangle_list.NUMBER_CONTEXTS)
     data = np.zeros(4096, np.uint8)
-    entropy.start(coder, data, 0)
+    range_coder.start(coder, data, 0)
     for number in numbers:
-        assert entropy.code_number(coder, data, odds, 0, number) == number
-    payload = data[: entropy.finish(coder, data)].copy()
-    odds = entropy.even_odds(entropy.NUMBER_CONTEXTS)
-    entropy.start(coder, payload, 1)
-    assert [entropy.code_number(coder, payload, odds, 0, 0) for _ in numbers] == numbers
+        assert triangle_list.code_number(coder, data, model, 0, number) == number
+    payload = data[: range_coder.finish(coder, data)].copy()
+    model = range_coder.even_model(triangle_list.NUMBER_CONTEXTS)
+    range_coder.start(coder, payload, 1)
+    assert [triangle_list.code_number(coder, payload, model, 0, 0) for _ in numbers] == numbers
 
 
 @given(st.lists(st.integers(0, 2**11 + 12), max_size=60))
 def test_sizes_come_back(sizes: list[int]) -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.SIZE_CONTEXTS)
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(colors.SIZE_CONTEXTS)
     data = np.zeros(4096, np.uint8)
-    entropy.start(coder, data, 0)
+    range_coder.start(coder, data, 0)
     for size in sizes:
-        assert entropy.code_size(coder, data, odds, 0, size) == size
-    payload = data[: entropy.finish(coder, data)].copy()
-    odds = entropy.even_odds(entropy.SIZE_CONTEXTS)
-    entropy.start(coder, payload, 1)
-    assert [entropy.code_size(coder, payload, odds, 0, 0) for _ in sizes] == sizes
+        assert colors.code_size(coder, data, model, 0, size) == size
+    payload = data[: range_coder.finish(coder, data)].copy()
+    model = range_coder.even_model(colors.SIZE_CONTEXTS)
+    range_coder.start(coder, payload, 1)
+    assert [colors.code_size(coder, payload, model, 0, 0) for _ in sizes] == sizes
 
 
 def test_a_size_of_too_many_bits_is_refused() -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(entropy.SIZE_CONTEXTS)
-    entropy.start(coder, as_bytes(bytes(64)), 0)
-    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**17 + 12) == 2**17 + 12
-    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 2**17 + 13) == -1
-    odds = entropy.even_odds(entropy.SIZE_CONTEXTS)
-    entropy.start(coder, as_bytes(bytes(64)), 1)  # Zeros are read as ones for ever.
-    assert entropy.code_size(coder, as_bytes(bytes(64)), odds, 0, 0) == -1
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(colors.SIZE_CONTEXTS)
+    range_coder.start(coder, as_bytes(bytes(64)), 0)
+    assert colors.code_size(coder, as_bytes(bytes(64)), model, 0, 2**17 + 12) == 2**17 + 12
+    assert colors.code_size(coder, as_bytes(bytes(64)), model, 0, 2**17 + 13) == -1
+    model = range_coder.even_model(colors.SIZE_CONTEXTS)
+    range_coder.start(coder, as_bytes(bytes(64)), 1)  # Zeros are read as ones for ever.
+    assert colors.code_size(coder, as_bytes(bytes(64)), model, 0, 0) == -1
 
 
-def test_odds_at_the_start_are_within_the_bounds_of_all_odds() -> None:
-    levels = [entropy.level_odds(n_components) for n_components in (1, 3, 4)]
-    for odds in (entropy.split_odds(), entropy.flip_odds(), *levels):
-        assert odds.dtype == np.int64
-        assert (odds[:, 0] >= 64).all()
-        assert (odds[:, 0] <= 65472).all()
-        assert set(odds[:, 1].tolist()) <= {0, 16}
-    assert len(entropy.split_odds()) == entropy.SPLIT_CONTEXTS
-    assert len(entropy.flip_odds()) == entropy.FLIP_CONTEXTS
-    assert [len(odds) for odds in levels] == [n * entropy.COMPONENT_CONTEXTS for n in (1, 3, 4)]
+def test_probabilities_at_the_start_are_within_the_bounds_of_all() -> None:
+    levels = [colors.initial_level_model(n_components) for n_components in (1, 3, 4)]
+    for model in (positions.initial_split_model(), flips.initial_flip_model(), *levels):
+        assert model.dtype == np.int64
+        assert (model[:, 0] >= 64).all()
+        assert (model[:, 0] <= 65472).all()
+        assert set(model[:, 1].tolist()) <= {0, 16}
+    assert len(positions.initial_split_model()) == positions.SPLIT_CONTEXTS
+    assert len(flips.initial_flip_model()) == flips.FLIP_CONTEXTS
+    assert [len(model) for model in levels] == [n * colors.COMPONENT_CONTEXTS for n in (1, 3, 4)]
 
 
-@pytest.mark.parametrize("count", range(1, entropy.N_SMALL))
-def test_odds_at_the_start_spread_the_points_evenly_over_both_halves(count: int) -> None:
-    # By the odds of the steps of the search, every number of points has its binomial chance.
+@pytest.mark.parametrize("count", range(1, positions.N_SMALL))
+def test_probabilities_at_the_start_spread_the_points_evenly_over_both_halves(count: int) -> None:
+    # By those of the steps of the search, every number of points has its binomial probability.
     area = 5
-    odds = entropy.split_odds().reshape(-1, 2)
+    model = positions.initial_split_model().reshape(-1, 2)
     for number in range(count + 1):
         low, high, chance = 0, count, 1.0
         while low < high:
             middle = (low + high) >> 1
-            context = (area * entropy.N_SMALL + count) * entropy.N_SMALL + middle
-            more = odds[context, 0] / 65536
+            context = (area * positions.N_SMALL + count) * positions.N_SMALL + middle
+            more = model[context, 0] / 65536
             if number > middle:
                 low, chance = middle + 1, chance * more
             else:
@@ -338,11 +344,12 @@ def test_a_payload_longer_than_the_first_buffer_is_written_whole() -> None:
 
 
 def test_the_writer_never_writes_beyond_its_room() -> None:
-    coder, odds = np.zeros(entropy.N_FIELDS, np.int64), entropy.even_odds(1)
+    coder = np.zeros(range_coder.N_FIELDS, np.int64)
+    model = range_coder.even_model(1)
     data = np.zeros(6, np.uint8)
-    entropy.start(coder, data[:4], 0)
+    range_coder.start(coder, data[:4], 0)
     for i in range(400):
-        entropy.code_bit(coder, data[:4], odds, 0, i % 2)
-    assert entropy.finish(coder, data[:4]) <= 4
-    assert coder[entropy.POSITION] > 4
+        range_coder.code_bit(coder, data[:4], model, 0, i % 2)
+    assert range_coder.finish(coder, data[:4]) <= 4
+    assert coder[range_coder.POSITION] > 4
     assert as_bytes(data[4:].tobytes()).tolist() == [0, 0]
