@@ -9,12 +9,12 @@ from tests.pictures import drawn, noise, psnr
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice
-from vmesh.encoder.code_order import code_order
 from vmesh.encoder.colors import NormalEquations, fit_colors
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.quantization import quantize
 from vmesh.encoder.settings import Settings
+from vmesh.encoder.tiles.code_order import code_order
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh
 

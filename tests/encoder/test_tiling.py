@@ -12,13 +12,13 @@ from tests.pictures import constant, disc, drawn, noise, psnr, ramp
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.writer import dumps
-from vmesh.encoder.code_order import code_order
 from vmesh.encoder.image import as_image
-from vmesh.encoder.joining import join
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.rate_control import measure_psnr
 from vmesh.encoder.settings import Settings
-from vmesh.encoder.tiling import apportion
+from vmesh.encoder.tiles.code_order import code_order
+from vmesh.encoder.tiles.joining import join
+from vmesh.encoder.tiles.tiled_draft import apportion
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh

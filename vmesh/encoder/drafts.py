@@ -11,11 +11,11 @@ import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
 from vmesh.color_lattice import ColorLattice
-from vmesh.encoder.code_order import code_order
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.image import depth_of, peak_of
 from vmesh.encoder.quantization import quantize
 from vmesh.encoder.sampling import Samples
+from vmesh.encoder.tiles.code_order import code_order
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata

@@ -13,7 +13,7 @@ from vmesh.encoder.rate_control import guess_vertices, price_of_quality
 from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
-from vmesh.encoder.tiling import TiledRemesher, TiledSamples, crop
+from vmesh.encoder.tiles.tiled_draft import TiledRemesher, TiledSamples, crop
 from vmesh.encoder.waves import Run, run_here
 from vmesh.grid import Grid, Tile
 

@@ -18,7 +18,7 @@ from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import meet_psnr, meet_size, refined_vertices
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.settings import Settings
-from vmesh.encoder.tiling import REPORTS, TiledRemesher
+from vmesh.encoder.tiles.tiled_draft import REPORTS, TiledRemesher
 from vmesh.encoder.waves import Run, workers
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay

@@ -12,8 +12,8 @@ import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
 from vmesh.encoder.drafts import SAMPLED_POWER, Draft, SampledDraft, price_of
-from vmesh.encoder.joining import join
 from vmesh.encoder.remeshing import Remesher
+from vmesh.encoder.tiles.joining import join
 from vmesh.encoder.waves import Run
 from vmesh.grid import Grid, Tile
 
