@@ -8,7 +8,7 @@ import pytest
 from tests import twins
 from tests.pictures import PICTURES, disc, drawn, noise
 from vmesh.arrays import UInt8Array
-from vmesh.encoder.drafts import Finisher, SampledDraft, price_of
+from vmesh.encoder.draft import Finisher, SampledDraft, price_of
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import guess_vertices, measure_psnr, price_of_quality

@@ -11,15 +11,15 @@ import numpy.typing as npt
 from vmesh.arrays import SampleArray
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.drafts import SUBDIVISION, UNIT, Draft, Finisher
-from vmesh.encoder.first_drafts import sampled_draft, sampled_tiles, thinned, thinned_tiles
+from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft, Finisher
 from vmesh.encoder.image import as_image, depth_of, peak_of, with_hidden_colors_replaced
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import meet_psnr, meet_size, refined_vertices
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.settings import Settings
+from vmesh.encoder.starting_mesh import sampled_draft, sampled_tiles, thinned, thinned_tiles
+from vmesh.encoder.threads import Run, workers
 from vmesh.encoder.tiles.tiled_draft import REPORTS, TiledRemesher
-from vmesh.encoder.waves import Run, workers
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata

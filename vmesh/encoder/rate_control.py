@@ -15,7 +15,7 @@ import numpy as np
 
 from vmesh.arrays import SampleArray
 from vmesh.codec.writer import dumps, metadata_size
-from vmesh.encoder.drafts import Draft, Finisher
+from vmesh.encoder.draft import Draft, Finisher
 from vmesh.kernels.scanline import SUBPIXEL, draw
 from vmesh.mesh import Mesh
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray
 from vmesh.encoder.colors import fit_components, sample_colors
-from vmesh.encoder.drafts import UNIT, price_of
+from vmesh.encoder.draft import UNIT, price_of
 from vmesh.encoder.image import peak_of, visible_planes
-from vmesh.encoder.waves import Run, run_here, shares, waves
+from vmesh.encoder.independent_sets import independent_sets
+from vmesh.encoder.threads import Run, run_here, shares
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.kernels.remeshing import (
@@ -273,7 +274,7 @@ class Remesher:
     def _relocate(self) -> None:
         """Move all vertices that something changed around to better places."""
         surface, picture = self._surface, self._picture
-        for groups in waves(surface.points, surface.origin.reshape(-1, 3)):
+        for groups in independent_sets(surface.points, surface.origin.reshape(-1, 3)):
             self._do(
                 lambda group: relocate(surface, picture, self._make_workspace(), group), groups
             )

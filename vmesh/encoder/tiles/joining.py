@@ -22,7 +22,7 @@ from typing import Final
 import numpy as np
 
 from vmesh.arrays import Int32Array, Int64Array
-from vmesh.encoder.drafts import UNIT
+from vmesh.encoder.draft import UNIT
 from vmesh.grid import Grid
 from vmesh.mesh import doubled_areas, raster_keys, sorted_triangles
 

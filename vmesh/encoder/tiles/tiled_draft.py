@@ -11,10 +11,10 @@ from typing import Any, Final, Generic, TypeVar
 import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
-from vmesh.encoder.drafts import SAMPLED_POWER, Draft, SampledDraft, price_of
+from vmesh.encoder.draft import SAMPLED_POWER, Draft, SampledDraft, price_of
 from vmesh.encoder.remeshing import Remesher
+from vmesh.encoder.threads import Run
 from vmesh.encoder.tiles.joining import join
-from vmesh.encoder.waves import Run
 from vmesh.grid import Grid, Tile
 
 Part = TypeVar("Part", bound=Draft)

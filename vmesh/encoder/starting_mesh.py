@@ -6,15 +6,15 @@ from collections.abc import Callable
 from typing import Final
 
 from vmesh.arrays import SampleArray
-from vmesh.encoder.drafts import SAMPLED_POWER, SampledDraft, price_of
+from vmesh.encoder.draft import SAMPLED_POWER, SampledDraft, price_of
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import guess_vertices, price_of_quality
 from vmesh.encoder.remeshing import Effort, Remesher
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
+from vmesh.encoder.threads import Run, run_here
 from vmesh.encoder.tiles.tiled_draft import TiledRemesher, TiledSamples, crop
-from vmesh.encoder.waves import Run, run_here
 from vmesh.grid import Grid, Tile
 
 # What each effort from 2 on buys.

@@ -11,18 +11,17 @@ from hypothesis import strategies as st
 
 from tests.strategies import meshes
 from vmesh.arrays import UInt8Array
-from vmesh.encoder import waves as module
+from vmesh.encoder.independent_sets import independent_sets
 from vmesh.encoder.pipeline import encode
-from vmesh.encoder.waves import shares, waves, workers
+from vmesh.encoder.threads import shares, workers
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh
 
 
 @given(meshes(), st.sampled_from([2, 8, 128]))
-def test_no_edge_joins_two_groups_of_a_wave(mesh: Mesh, band: int) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "_BAND", band)
-        found = waves(mesh.vertices.astype(np.int64), mesh.triangles.astype(np.int64))
+def test_no_edge_joins_two_groups_of_a_set(mesh: Mesh, band: int) -> None:
+    points, triangles = mesh.vertices.astype(np.int64), mesh.triangles.astype(np.int64)
+    found = independent_sets(points, triangles, band)
     vertices = [v for groups in found for group in groups for v in group.tolist()]
     assert sorted(vertices) == list(range(mesh.n_vertices))
     for groups in found:
@@ -34,7 +33,9 @@ def test_no_edge_joins_two_groups_of_a_wave(mesh: Mesh, band: int) -> None:
 def test_a_tall_mesh_has_work_for_many_threads() -> None:
     random = np.random.default_rng(0)
     points = np.unique(random.integers(0, [200, 2000], (4000, 2)), axis=0).astype(np.int32)
-    first, second, rest = waves(points.astype(np.int64), delaunay(points).astype(np.int64))
+    first, second, rest = independent_sets(
+        points.astype(np.int64), delaunay(points).astype(np.int64)
+    )
     assert len(first) == len(second) + 1 == 16
     assert sum(map(len, first)) > 0.6 * len(points)
     assert sum(map(len, rest)) < 0.02 * len(points)
