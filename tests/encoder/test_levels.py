@@ -53,7 +53,7 @@ def samples_of(levels: Int32Array, lattice: ColorLattice) -> Float64Array:
 
 @pytest.mark.parametrize("step", [1, 8, 30, 100])
 @pytest.mark.parametrize("n_components", [1, 3, 4])
-def test_without_a_price_the_error_is_no_larger_than_that_of_rounding(
+def test_with_a_lambda_of_0_the_error_is_no_larger_than_that_of_rounding(
     n_components: int, step: int
 ) -> None:
     image = noise(30, 36, n_components)
@@ -72,15 +72,15 @@ def test_without_a_price_the_error_is_no_larger_than_that_of_rounding(
 
 
 @pytest.mark.parametrize("n_components", [1, 3])
-def test_a_higher_price_takes_fewer_bytes_and_leaves_more_error(
+def test_a_larger_lambda_takes_fewer_bytes_and_leaves_more_error(
     coffee: UInt8Array, n_components: int
 ) -> None:
     image = np.ascontiguousarray(coffee[100:180, 150:250, :n_components])
     vertices, triangles, colors, equations = fitted(image, 300)
     lattice = ColorLattice.uniform(n_components, 8)
     sizes, reached = [], []
-    for price in (0.0, 100.0, 1000.0, 10_000.0, 1e6):
-        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, price)
+    for lambda_ in (0.0, 100.0, 1000.0, 10_000.0, 1e6):
+        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, lambda_)
         mesh = Mesh(100, 80, vertices, triangles, levels, lattice, subdivision=1)
         sizes.append(len(dumps(mesh)))
         reached.append(psnr(drawn(mesh), image))
@@ -89,12 +89,12 @@ def test_a_higher_price_takes_fewer_bytes_and_leaves_more_error(
     assert sizes[-1] < 0.9 * sizes[0]
 
 
-def test_a_fair_price_is_better_than_a_coarser_step(cup: UInt8Array) -> None:
+def test_a_fair_lambda_is_better_than_a_coarser_step(cup: UInt8Array) -> None:
     vertices, triangles, colors, equations = fitted(cup, 300)
 
-    def size_and_psnr(step: int, price: float) -> tuple[int, float]:
+    def size_and_psnr(step: int, lambda_: float) -> tuple[int, float]:
         lattice = ColorLattice.uniform(3, step)
-        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, price)
+        levels = quantize(equations, colors, code_order(vertices, None, 2), lattice, lambda_)
         mesh = Mesh(100, 80, vertices, triangles, levels, lattice, subdivision=1)
         return len(dumps(mesh)), psnr(drawn(mesh), cup)
 

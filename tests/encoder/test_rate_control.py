@@ -1,4 +1,4 @@
-"""Drafts, their prices and measures, and the search for a goal."""
+"""Drafts, their lambdas and measures, and the search for a goal."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ import pytest
 from tests import twins
 from tests.pictures import PICTURES, disc, drawn, noise
 from vmesh.arrays import UInt8Array
-from vmesh.encoder.draft import Finisher, SampledDraft, price_of
+from vmesh.encoder.draft import SampledDraft
+from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
-from vmesh.encoder.rate_control import guess_vertices, measure_psnr, price_of_quality
+from vmesh.encoder.rate_control import measure_psnr
+from vmesh.encoder.rate_model import lambda_of, lambda_of_quality, vertices_for
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import Settings
 from vmesh.formats.raster.rendering import render
@@ -42,15 +44,15 @@ def test_psnr_counts_colors_as_far_as_they_are_seen() -> None:
     assert measure_psnr(hidden, mesh) == measure_psnr(other, mesh)
 
 
-def test_a_price_falls_with_the_quality() -> None:
-    prices = [price_of_quality(quality, 255) for quality in range(101)]
-    assert prices == sorted(prices, reverse=True)
-    assert len(set(prices)) == 101
-    assert prices[-1] > 0
+def test_lambda_falls_with_the_quality() -> None:
+    lambdas = [lambda_of_quality(quality, 255) for quality in range(101)]
+    assert lambdas == sorted(lambdas, reverse=True)
+    assert len(set(lambdas)) == 101
+    assert lambdas[-1] > 0
 
 
 def test_a_larger_file_is_guessed_to_hold_more_vertices() -> None:
-    counts = [guess_vertices(size) for size in range(1, 5000, 7)]
+    counts = [vertices_for(size) for size in range(1, 5000, 7)]
     assert counts == sorted(counts)
     assert counts[0] == 4
 
@@ -76,7 +78,7 @@ def test_a_sampled_draft_knows_its_error(n_components: int) -> None:
         solution = np.linalg.lstsq(weights, values, rcond=None)[0]
         expected += float(np.square(weights @ solution - values).sum())
     assert draft.error == pytest.approx(expected, rel=0.1)
-    assert price_of(draft) == pytest.approx(0.045 * draft.error / draft.n_vertices)
+    assert lambda_of(draft) == pytest.approx(0.045 * draft.error / draft.n_vertices)
 
 
 def test_a_draft_of_fewer_vertices_has_more_error(chelsea: UInt8Array) -> None:
@@ -96,9 +98,9 @@ def test_colors_are_as_fine_as_the_error_deserves(chelsea: UInt8Array) -> None:
     steps = []
     for n in (1500, 300, 60):
         draft.resize(n)
-        mesh = Finisher(image, Metadata(xmp=b"x"), None).finish(draft)
+        mesh = MeshBuilder(image, Metadata(xmp=b"x"), None).build(draft)
         mesh.check()
         assert mesh.metadata.xmp == b"x"
         steps.append(mesh.lattice.steps[0])
     assert steps[0] < steps[1] < steps[2]
-    assert Finisher(image, Metadata(), 9).finish(draft).lattice.steps[0] == 9
+    assert MeshBuilder(image, Metadata(), 9).build(draft).lattice.steps[0] == 9

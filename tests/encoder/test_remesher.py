@@ -15,8 +15,9 @@ from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
 from tests.surfaces import check_mesh, check_surface, measure_all
 from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.encoder.effort import Effort
 from vmesh.encoder.proposals import propose
-from vmesh.encoder.remeshing import Effort, Remesher
+from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.settings import Settings
 
 EFFORT = Effort(density=0.1, max_rounds=3, least_gain=0.0, share_decay=0.8)

@@ -91,8 +91,8 @@ def means_of(problem: Problem, shares: Float64Array) -> Float64Array:
     return means
 
 
-def objective(problem: Problem, kept: Bookkeeping, price: float) -> float:
-    """Squared error and price of the bits from scratch, with shares and spreads as they were."""
+def objective(problem: Problem, kept: Bookkeeping, lambda_: float) -> float:
+    """Squared error + lambda * bits from scratch, with shares and spreads as they were."""
     missing = problem.values - problem.matrix @ (problem.levels @ problem.steps)
     distances = np.abs(problem.levels[problem.hierarchy.order] - means_of(problem, kept.shares))
     n_bits = 0.0
@@ -100,10 +100,10 @@ def objective(problem: Problem, kept: Bookkeeping, price: float) -> float:
         row = problem.table[z, kept.spreads[place, z]]
         low = min(int(distance), TABLE_SIZE - 2)
         n_bits += row[low] + (distance - low) * (row[low + 1] - row[low])
-    return float((missing**2).sum()) + price * n_bits
+    return float((missing**2).sum()) + lambda_ * n_bits
 
 
-def sweep(problem: Problem, kept: Bookkeeping, price: float) -> int:
+def sweep(problem: Problem, kept: Bookkeeping, lambda_: float) -> int:
     """One sweep of the descent."""
     order, starts, parents = problem.hierarchy
     products = problem.matrix.T @ problem.matrix
@@ -126,7 +126,7 @@ def sweep(problem: Problem, kept: Bookkeeping, price: float) -> int:
         np.repeat(products[products != 0][:, None], n_components, axis=1),
         kept.residual,
         problem.steps,
-        price,
+        lambda_,
         255,
         problem.lowest,
         problem.highest,
@@ -134,10 +134,10 @@ def sweep(problem: Problem, kept: Bookkeeping, price: float) -> int:
     )
 
 
-def settle(problem: Problem, kept: Bookkeeping, price: float) -> None:
+def settle(problem: Problem, kept: Bookkeeping, lambda_: float) -> None:
     """Sweeps until nothing changes any more."""
     for _ in range(50):
-        if not sweep(problem, kept, price):
+        if not sweep(problem, kept, lambda_):
             return
     raise AssertionError("the descent does not come to rest")
 
@@ -166,24 +166,24 @@ def test_means_and_spreads_are_those_of_the_parents(n_components: int, seed: int
             assert used == pytest.approx(weights / weights.sum())
 
 
-@pytest.mark.parametrize("price", [0.0, 30.0, 1000.0, 1e5])
+@pytest.mark.parametrize("lambda_", [0.0, 30.0, 1000.0, 1e5])
 @pytest.mark.parametrize("n_components", [1, 3, 4])
 @pytest.mark.parametrize("seed", range(2))
 def test_the_books_are_those_of_counting_anew_and_the_objective_never_rises(
-    n_components: int, price: float, seed: int
+    n_components: int, lambda_: float, seed: int
 ) -> None:
     problem = make_problem(20, n_components, seed)
     kept = start(problem)
-    before = objective(problem, kept, price)
+    before = objective(problem, kept, lambda_)
     for _ in range(30):
         levels = problem.levels.copy()
-        changed = sweep(problem, kept, price)
+        changed = sweep(problem, kept, lambda_)
         assert changed == np.count_nonzero(problem.levels != levels)
         assert kept.means == pytest.approx(means_of(problem, kept.shares))
         assert kept.residual == pytest.approx(residual_of(problem), abs=1e-6)
         assert (problem.levels >= problem.lowest).all()
         assert (problem.levels <= problem.highest).all()
-        after = objective(problem, kept, price)
+        after = objective(problem, kept, lambda_)
         assert after <= before
         assert (after < before) == (changed > 0)
         before = after
@@ -192,41 +192,41 @@ def test_the_books_are_those_of_counting_anew_and_the_objective_never_rises(
     assert changed == 0
 
 
-@pytest.mark.parametrize("price", [0.0, 30.0, 1000.0])
+@pytest.mark.parametrize("lambda_", [0.0, 30.0, 1000.0])
 @pytest.mark.parametrize("n_components", [1, 3])
 @pytest.mark.parametrize("seed", range(3))
 def test_the_descent_ends_where_no_single_change_helps(
-    n_components: int, price: float, seed: int
+    n_components: int, lambda_: float, seed: int
 ) -> None:
     problem = make_problem(4, n_components, seed)
     kept = start(problem)
-    settle(problem, kept, price)
-    least = objective(problem, kept, price)
+    settle(problem, kept, lambda_)
+    least = objective(problem, kept, lambda_)
     for v, z in np.ndindex(problem.levels.shape):
         level = problem.levels[v, z]
         for change in (-2, -1, 1, 2):
             if problem.lowest[z] <= level + change <= problem.highest[z]:
                 problem.levels[v, z] = level + change
-                assert objective(problem, kept, price) >= least - 1e-6
+                assert objective(problem, kept, lambda_) >= least - 1e-6
         problem.levels[v, z] = level
 
 
-@pytest.mark.parametrize("price", [0.0, 30.0, 1000.0])
+@pytest.mark.parametrize("lambda_", [0.0, 30.0, 1000.0])
 @pytest.mark.parametrize("seed", range(4))
-def test_few_levels_end_near_the_least_that_there_is(price: float, seed: int) -> None:
+def test_few_levels_end_near_the_least_that_there_is(lambda_: float, seed: int) -> None:
     problem = make_problem(0, 1, seed, step=51)
     free = [0, 3, 7]
     kept = start(problem)
-    settle(problem, kept, price)
-    found = objective(problem, kept, price)
+    settle(problem, kept, lambda_)
+    found = objective(problem, kept, lambda_)
     least = np.inf
     for choice in product(range(6), repeat=len(free)):
         problem.levels[free, 0] = choice
-        least = min(least, objective(problem, kept, price))
+        least = min(least, objective(problem, kept, lambda_))
     assert found == pytest.approx(least)
 
 
-def test_without_a_price_a_level_goes_to_where_the_error_is_least() -> None:
+def test_with_a_lambda_of_0_a_level_goes_to_where_the_error_is_least() -> None:
     problem = make_problem(10, 1, 0)
     problem.table[:] = 1e9 * np.random.default_rng(0).random(problem.table.shape)
     kept = start(problem)

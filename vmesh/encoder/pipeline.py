@@ -11,8 +11,10 @@ import numpy.typing as npt
 from vmesh.arrays import SampleArray
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft, Finisher
+from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
+from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.image import as_image, depth_of, peak_of, with_hidden_colors_replaced
+from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import meet_psnr, meet_size, refined_vertices
 from vmesh.encoder.remeshing import Remesher
@@ -27,9 +29,7 @@ from vmesh.progress import Progress, silent
 
 STAGES: Final = ("sampling", "thinning", "refinement", "colors", "rate control")
 
-# About so many steps, for the display of progress.
-_THINNING_STEPS: Final = 4
-_REFINEMENT_STEPS: Final = {2: 2, 3: 3, 4: 4, 5: 5, 6: 7, 7: 10, 8: 20, 9: 50}
+_THINNING_REPORTS: Final = 4  # about
 
 _BLUE_NOISE_STEP: Final = 8
 
@@ -72,22 +72,22 @@ def encode(
         return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
     report("sampling")
     grid = _grid(image, chosen)
-    finisher = Finisher(image, metadata or Metadata(), chosen.color_step, grid)
+    builder = MeshBuilder(image, metadata or Metadata(), chosen.color_step, grid)
     with workers(chosen.threads) as run:
         if chosen.effort == 1:
             draft = _sample(image, grid, chosen, run)
         else:
-            draft = _remesh(image, chosen, finisher, report, run)
+            draft = _remesh(image, chosen, builder, report, run)
         report("colors")
-        return _meet_goal(draft, finisher, chosen, lambda: report("rate control"))
+        return _meet_goal(draft, builder, chosen, lambda: report("rate control"))
 
 
 def count_steps(settings: Settings) -> int:
     """About how often an encoding with these settings reports progress."""
     if settings.method == "blue-noise" or settings.effort == 1:
         return 3
-    refinement = _REFINEMENT_STEPS[settings.effort] if settings.tile is None else REPORTS
-    return 3 + _THINNING_STEPS + refinement
+    refinement = EFFORTS[settings.effort].n_reports if settings.tile is None else REPORTS
+    return 3 + _THINNING_REPORTS + refinement
 
 
 def _encode_blue_noise(
@@ -126,19 +126,19 @@ def _sample(image: SampleArray, grid: Grid | None, settings: Settings, run: Run)
 
 
 def _remesh(
-    image: SampleArray, settings: Settings, finisher: Finisher, report: Progress, run: Run
+    image: SampleArray, settings: Settings, builder: MeshBuilder, report: Progress, run: Run
 ) -> Draft:
     """The vertices of a dense sample that matter most, moved to better places."""
     height, width = image.shape[:2]
     draft: Remesher | TiledRemesher
-    if finisher.grid is None:
+    if builder.grid is None:
         draft = thinned(image, settings, lambda: report("thinning"), run)
     else:
-        draft = thinned_tiles(image, finisher.grid, settings, lambda: report("thinning"), run)
+        draft = thinned_tiles(image, builder.grid, settings, lambda: report("thinning"), run)
     wanted = settings.n_vertices(width, height)
     n_vertices = wanted or draft.n_vertices
     if settings.target_size is not None:
-        n_vertices = refined_vertices(finisher.finish(draft), settings.target_size)
+        n_vertices = refined_vertices(builder.build(draft), settings.target_size)
     draft.refine(min(n_vertices, width * height), lambda: report("refinement"))
     if wanted is not None and draft.n_vertices != min(wanted, width * height):
         draft.resize(min(wanted, width * height))
@@ -146,11 +146,11 @@ def _remesh(
 
 
 def _meet_goal(
-    draft: Draft, finisher: Finisher, settings: Settings, report: Callable[[], None]
+    draft: Draft, builder: MeshBuilder, settings: Settings, report: Callable[[], None]
 ) -> Mesh:
     """Mesh of a draft, resized where the settings ask for a size or a PSNR."""
     if settings.target_size is not None:
-        return meet_size(draft, finisher, settings.target_size, report)
+        return meet_size(draft, builder, settings.target_size, report)
     if settings.target_psnr is not None:
-        return meet_psnr(draft, finisher, settings.target_psnr, report)
-    return finisher.finish(draft)
+        return meet_psnr(draft, builder, settings.target_psnr, report)
+    return builder.build(draft)

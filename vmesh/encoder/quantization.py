@@ -24,9 +24,9 @@ def quantize(
     colors: Float64Array,
     hierarchy: Hierarchy,
     lattice: ColorLattice,
-    price: float,
+    lambda_: float,
 ) -> Int32Array:
-    """Levels that make squared error + price * bits small.
+    """Levels that make squared error + lambda * bits small.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def quantize(
     hierarchy : Hierarchy
         The order in which a file holds the levels.
     lattice : ColorLattice
-    price : float
+    lambda_ : float
         Squared error that a bit is worth; 0 looks at the error alone.
 
     Returns
@@ -76,7 +76,7 @@ def quantize(
             form.products,
             residual,
             steps,
-            price,
+            lambda_,
             lattice.max_sample,
             lowest,
             highest,

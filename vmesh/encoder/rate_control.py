@@ -1,8 +1,8 @@
-"""Rate control: how many vertices a mesh needs for a wanted quality, size or error.
+"""Rate control: how many vertices a mesh needs for a wanted size or error.
 
-One Lagrangian decides everything, the price of a bit in squared error: which vertices are worth
-their bits, which flips, and which levels. Fewer vertices go with a higher price, so the number of
-vertices is the one thing to search for.
+One lambda decides which vertices are worth their bits, which flips, and which levels
+(``rate_model``). Fewer vertices go with a larger one, so the number of vertices is the one thing to
+search for.
 """
 
 from __future__ import annotations
@@ -15,20 +15,11 @@ import numpy as np
 
 from vmesh.arrays import SampleArray
 from vmesh.codec.writer import dumps, metadata_size
-from vmesh.encoder.draft import Draft, Finisher
+from vmesh.encoder.draft import Draft
+from vmesh.encoder.mesh_builder import MeshBuilder
+from vmesh.encoder.rate_model import rescaled_vertices, size_after_refinement
 from vmesh.kernels.scanline import SUBPIXEL, draw
 from vmesh.mesh import Mesh
-
-# At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
-# factor.
-_PRICE_AT_75: Final = 400.0
-_PRICE_FACTOR: Final = 15.0
-
-# A first guess for a size: bytes of the frame, and bits of a vertex.
-_FRAME_BYTES: Final = 28
-_VERTEX_BITS: Final = 18.0
-# Size of a mesh after refinement, for that before: 1.19 to 1.34 on five photographs at three sizes.
-_REFINED_SIZE: Final = 1.28
 
 _MAX_ATTEMPTS: Final = 30
 _SIZE_TOLERANCE: Final = 0.02
@@ -40,31 +31,20 @@ _LEAST_GAIN: Final = 1.5
 _MOST_GAIN: Final = 8.0
 
 
-def price_of_quality(quality: int, peak: int) -> float:
-    """Squared error that a bit has to save at a quality of 0 to 100, for samples up to `peak`."""
-    return float(_PRICE_AT_75 * _PRICE_FACTOR ** ((75 - quality) / 25)) * (peak / 255) ** 2
-
-
-def guess_vertices(target_size: int) -> int:
-    """Number of vertices to start from for a file of a size."""
-    return max(4, round(8 * (target_size - _FRAME_BYTES) / _VERTEX_BITS))
-
-
 def refined_vertices(mesh: Mesh, target_size: int) -> int:
     """Number of vertices for a file of a size, judging by a mesh before it is refined."""
-    size = round(_REFINED_SIZE * len(dumps(mesh)))
-    return max(4, _scale_vertices(mesh, size, target_size))
+    size = size_after_refinement(len(dumps(mesh)))
+    return max(4, _vertices_below(mesh, size, target_size))
 
 
-def _scale_vertices(mesh: Mesh, size: int, target_size: int) -> int:
+def _vertices_below(mesh: Mesh, size: int, target_size: int) -> int:
     """Number of vertices for a size a little below the target, judging by a mesh and its size."""
-    bits = max(size - _FRAME_BYTES - metadata_size(mesh.metadata), 1) / mesh.n_vertices
     aim = (1 - 0.3 * _SIZE_TOLERANCE) * target_size
-    return mesh.n_vertices + round((aim - size) / bits)
+    return rescaled_vertices(mesh.n_vertices, size, metadata_size(mesh.metadata), aim)
 
 
 def meet_size(
-    draft: Draft, finisher: Finisher, target_size: int, report: Callable[[], None]
+    draft: Draft, builder: MeshBuilder, target_size: int, report: Callable[[], None]
 ) -> Mesh:
     """The best mesh whose file is not larger than `target_size`, and within 2 % of it.
 
@@ -76,14 +56,14 @@ def meet_size(
     best: Mesh | None = None
     best_size = 0
     for _ in range(_MAX_ATTEMPTS):
-        mesh = finisher.finish(draft)
+        mesh = builder.build(draft)
         size = len(dumps(mesh))
         if best_size < size <= target_size:
             best, best_size = mesh, size
         if (1 - _SIZE_TOLERANCE) * target_size <= size <= target_size:
             break
         before = draft.n_vertices
-        wanted = _scale_vertices(mesh, size, target_size)
+        wanted = _vertices_below(mesh, size, target_size)
         wanted = min(wanted, before - 1) if size > target_size else max(wanted, before + 1)
         draft.resize(max(4, wanted))
         report()
@@ -95,7 +75,7 @@ def meet_size(
 
 
 def meet_psnr(
-    draft: Draft, finisher: Finisher, target_psnr: float, report: Callable[[], None]
+    draft: Draft, builder: MeshBuilder, target_psnr: float, report: Callable[[], None]
 ) -> Mesh:
     """The smallest mesh found whose PSNR is at least `target_psnr`, and within 0.1 dB of it.
 
@@ -109,8 +89,8 @@ def meet_psnr(
     gain = _GAIN
     earlier: tuple[float, float] | None = None
     for attempt in range(_MAX_ATTEMPTS):
-        mesh = finisher.finish(draft)
-        psnr = measure_psnr(finisher.image, mesh)
+        mesh = builder.build(draft)
+        psnr = measure_psnr(builder.image, mesh)
         if psnr >= target_psnr and (best is None or psnr < best_psnr):
             best, best_psnr = mesh, psnr
         if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray
 from vmesh.encoder.colors import fit_components, sample_colors
-from vmesh.encoder.draft import UNIT, price_of
+from vmesh.encoder.draft import UNIT
+from vmesh.encoder.effort import Effort
 from vmesh.encoder.image import peak_of, visible_planes
 from vmesh.encoder.independent_sets import independent_sets
+from vmesh.encoder.rate_model import flip_cost, lambda_of
 from vmesh.encoder.threads import Run, run_here, shares
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
@@ -43,31 +44,7 @@ _CHANCE: Final = 8.0
 _SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
 _HASTE: Final = 0.6  # what the share falls by where the error has risen
 _PATIENCE: Final = 3  # rounds that are judged together
-# Bits that an edge costs which is not Delaunay.
-_FLIP_BITS: Final = 3.5
 _INSERTION_PASSES: Final = 6
-
-
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """How long a mesh is worked on.
-
-    Parameters
-    ----------
-    density : float
-        Vertices per pixel that thinning starts from.
-    max_rounds : int
-        Most rounds of refinement.
-    least_gain : float
-        Share of the error that a round of refinement has to save for another one to follow.
-    share_decay : float
-        What the share of the vertices that are exchanged falls by from round to round.
-    """
-
-    density: float
-    max_rounds: int
-    least_gain: float
-    share_decay: float
 
 
 class Remesher:
@@ -199,7 +176,7 @@ class Remesher:
     def _settle(self) -> None:
         """Move vertices and flip edges to where the error is least."""
         self._relocate()
-        charge = _FLIP_BITS * price_of(self)
+        charge = flip_cost(lambda_of(self))
         flip_edges(self._surface, self._picture, self._workspace, charge)
         self._refit()
 

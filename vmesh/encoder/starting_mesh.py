@@ -1,4 +1,4 @@
-"""First drafts: what is sampled of a picture or of its tiles, as far as its goal allows."""
+"""The starting mesh: what is sampled of a picture or of its tiles, thinned as its goal allows."""
 
 from __future__ import annotations
 
@@ -6,35 +6,27 @@ from collections.abc import Callable
 from typing import Final
 
 from vmesh.arrays import SampleArray
-from vmesh.encoder.draft import SAMPLED_POWER, SampledDraft, price_of
+from vmesh.encoder.draft import SampledDraft
+from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.proposals import propose
-from vmesh.encoder.rate_control import guess_vertices, price_of_quality
-from vmesh.encoder.remeshing import Effort, Remesher
+from vmesh.encoder.rate_model import (
+    SAMPLED_POWER,
+    error_before_refinement,
+    lambda_of,
+    lambda_of_quality,
+    staying_cost,
+    vertices_for,
+)
+from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
 from vmesh.encoder.threads import Run, run_here
 from vmesh.encoder.tiles.tiled_draft import TiledRemesher, TiledSamples, crop
 from vmesh.grid import Grid, Tile
 
-# What each effort from 2 on buys.
-_EFFORTS: Final = {
-    2: Effort(density=0.04, max_rounds=1, least_gain=0.0, share_decay=1.0),
-    3: Effort(density=0.05, max_rounds=2, least_gain=0.0, share_decay=0.7),
-    4: Effort(density=0.06, max_rounds=3, least_gain=0.0, share_decay=0.8),
-    5: Effort(density=0.045, max_rounds=16, least_gain=0.06, share_decay=0.85),
-    6: Effort(density=0.10, max_rounds=20, least_gain=0.04, share_decay=0.9),
-    7: Effort(density=0.15, max_rounds=30, least_gain=0.015, share_decay=0.93),
-    8: Effort(density=0.25, max_rounds=32, least_gain=0.004, share_decay=0.96),
-    9: Effort(density=0.25, max_rounds=64, least_gain=0.0, share_decay=0.98),
-}
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3
-# A vertex stays while its removal costs more than this many bits: what it takes, and what it will
-# gain in its final place.
-_VERTEX_BITS: Final = 20.0
-# The error before refinement, for that after it.
-_REFINEMENT_GAIN: Final = 1.6
 
 
 def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
@@ -48,9 +40,9 @@ def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
     wanted = _wanted_vertices(settings, width, height)
     draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
     if wanted is None and settings.target_psnr is None:
-        price = price_of_quality(_quality(settings), peak_of(image))
+        lambda_ = lambda_of_quality(_quality(settings), peak_of(image))
         for _ in range(2):
-            factor = (price_of(draft) / price) ** (1 / SAMPLED_POWER)
+            factor = (lambda_of(draft) / lambda_) ** (1 / SAMPLED_POWER)
             draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
     return draft
 
@@ -115,13 +107,13 @@ def thinned_tiles(
 
 def _start(width: int, height: int, settings: Settings) -> int:
     """Number of vertices that thinning starts from."""
-    return max(4, round(_EFFORTS[settings.effort].density * width * height))
+    return max(4, round(EFFORTS[settings.effort].density * width * height))
 
 
 def _proposed(image: SampleArray, settings: Settings, n_vertices: int, run: Run) -> Remesher:
     """A dense sample of a picture."""
     _, samples = propose(image, settings.with_goal(vertices=n_vertices))
-    return Remesher(image, samples.vertices(), _EFFORTS[settings.effort], run)
+    return Remesher(image, samples.vertices(), EFFORTS[settings.effort], run)
 
 
 def _had_choice(draft: Remesher) -> bool:
@@ -135,21 +127,21 @@ def _thin(
     wanted: int | None,
     report: Callable[[], None],
 ) -> None:
-    """Remove vertices down to the number wanted, or as many as the price or the error allows."""
+    """Remove vertices down to the number wanted, or as many as lambda or the error allows."""
     if wanted is not None:
         draft.thin(wanted, report)
     elif settings.target_psnr is not None:
         allowed = draft.n_samples * draft.peak**2 / 10.0 ** (settings.target_psnr / 10.0)
-        draft.thin(4, report, max_error=_REFINEMENT_GAIN * allowed)
+        draft.thin(4, report, max_error=error_before_refinement(allowed))
     else:
-        price = price_of_quality(_quality(settings), draft.peak)
-        draft.thin(4, report, max_cost=_VERTEX_BITS * price)
+        lambda_ = lambda_of_quality(_quality(settings), draft.peak)
+        draft.thin(4, report, max_cost=staying_cost(lambda_))
 
 
 def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:
     """Number of vertices that the settings ask for, or that a file of their size may hold."""
     if settings.target_size is not None:
-        return max(4, min(guess_vertices(settings.target_size), width * height))
+        return max(4, min(vertices_for(settings.target_size), width * height))
     return settings.n_vertices(width, height)
 
 

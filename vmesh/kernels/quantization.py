@@ -98,7 +98,7 @@ def descend(
     products: Float64Array,
     residual: Float64Array,
     steps: Float64Array,
-    price: float,
+    lambda_: float,
     peak: int,
     lowest: Int32Array,
     highest: Int32Array,
@@ -124,7 +124,7 @@ def descend(
         Shape (n, c), float64: A'(y - A c) in samples; follows the changes.
     steps : ndarray
         Shape (c, c), float64: change of the samples with each component's level.
-    price : float
+    lambda_ : float
         Squared error that a bit is worth.
     peak : int
         The largest sample.
@@ -157,7 +157,7 @@ def descend(
                 moved = min(level + change, top) - min(level, top)
                 cost = moved * slope + moved * moved * curvature
                 # No change saves more bits than these in practice.
-                if cost > 16.0 * price:
+                if cost > 16.0 * lambda_:
                     continue
                 more = bits(table, z, spreads[place, z], own + change) - own_bits
                 for j in range(child_starts[v], child_starts[v + 1]):
@@ -166,7 +166,7 @@ def descend(
                     spread = spreads[child, z]
                     later = distance - shares[child_entries[j], z] * change
                     more += bits(table, z, spread, later) - bits(table, z, spread, distance)
-                cost += price * more
+                cost += lambda_ * more
                 if cost < least:
                     best, least = change, cost
             if best == 0:

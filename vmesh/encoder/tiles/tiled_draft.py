@@ -1,6 +1,6 @@
 """Drafts of a picture in tiles, of which each is worked on as a picture of its own.
 
-The tiles share nothing but the price of a vertex, so they are the jobs of the threads.
+The tiles share nothing but the cost of a vertex, so they are the jobs of the threads.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Any, Final, Generic, TypeVar
 import numpy as np
 
 from vmesh.arrays import Int32Array, SampleArray
-from vmesh.encoder.draft import SAMPLED_POWER, Draft, SampledDraft, price_of
+from vmesh.encoder.draft import Draft, SampledDraft
+from vmesh.encoder.rate_model import ERROR_POWER, SAMPLED_POWER, lambda_of
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.threads import Run
 from vmesh.encoder.tiles.joining import join
@@ -21,9 +22,8 @@ Part = TypeVar("Part", bound=Draft)
 
 _CORNERS: Final = 4
 _NO_ERROR: Final = 1e-9  # instead of 0, where it divides
-# The error falls with about this power of the number of vertices, and what the least useful one
-# costs with a larger power than that below: a search in such steps comes from above.
-_ERROR_POWER: Final = 0.85
+# What the least useful vertex costs falls with a larger power of their number than this: a search
+# in such steps comes from above.
 _COST_POWER: Final = 1.5
 # A dense sample has many vertices that are worth next to nothing: what all are worth on average
 # is right for so many times fewer.
@@ -119,7 +119,7 @@ class TiledSamples(TiledDraft[SampledDraft]):
 
     def balance(self) -> None:
         """Share the vertices out so that a bit is worth about as much in every tile."""
-        worth = [part.n_vertices * price_of(part) ** (1 / SAMPLED_POWER) for part in self._parts]
+        worth = [part.n_vertices * lambda_of(part) ** (1 / SAMPLED_POWER) for part in self._parts]
         self._resize_parts(apportion(worth, self._n_apart))
 
 
@@ -187,7 +187,7 @@ class TiledRemesher(TiledDraft[Remesher]):
 
     def _excess(self, n_vertices: int, max_error: float) -> float:
         """How many times more vertices there are than wanted, or than the error allows."""
-        allowed: float = (max_error / max(self.error, _NO_ERROR)) ** (1 / _ERROR_POWER)
+        allowed: float = (max_error / max(self.error, _NO_ERROR)) ** (1 / ERROR_POWER)
         return min(self._n_apart / n_vertices, allowed)
 
     def _next_cost(self, excess: float) -> float:
