@@ -31,7 +31,7 @@ import vmesh
 from vmesh.arrays import UInt8Array
 from vmesh.codec.reader import measure
 from vmesh.encoder.colors import fit_colors
-from vmesh.encoder.image import visible_planes
+from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import sample
 from vmesh.encoder.settings import ColorMode, Sampler
@@ -122,7 +122,7 @@ def report_points(printer: Printer, photographs: list[Photograph]) -> None:
 
 def count_points(pixels: UInt8Array, sampler: Sampler) -> list[int]:
     """Distinct points of a picture at each of `GAMMAS`, those on the border included."""
-    planes = visible_planes(pixels)
+    planes = premultiplied_planes(pixels)
     return [sample(compute_salience(planes, gamma), sampler=sampler).n_points for gamma in GAMMAS]
 
 
@@ -351,7 +351,7 @@ def report_speed(printer: Printer, photograph: Photograph) -> None:
             verdict = (f"{target:.0f}", judge(timing.median * 1e3, target))
         rows.append((name, *timing.cells(), *verdict))
     height, width = pixels.shape[:2]
-    natural = sample(compute_salience(visible_planes(pixels))).n_points
+    natural = sample(compute_salience(premultiplied_planes(pixels))).n_points
     printer.heading("Speed")
     printer.table(
         Table(
@@ -371,15 +371,15 @@ def report_speed(printer: Printer, photograph: Photograph) -> None:
 
 def stages(pixels: UInt8Array) -> dict[str, Callable[[], object]]:
     """The encoder's stages, and the codec's, each ready to run by itself."""
-    salience = compute_salience(visible_planes(pixels))
+    salience = compute_salience(premultiplied_planes(pixels))
     mesh = vmesh.encode(pixels, method="blue-noise", vertices=POINTS)
     vertices, triangles = mesh.vertices, mesh.triangles
     colors, _ = fit_colors(pixels, vertices, triangles, PIXEL_UNIT)
     data = vmesh.dumps(mesh)
     return {
-        "salience": lambda: compute_salience(visible_planes(pixels)),
+        "salience": lambda: compute_salience(premultiplied_planes(pixels)),
         "sampling at the natural scale": lambda: sample(salience),
-        PROPOSAL: lambda: sample(compute_salience(visible_planes(pixels))),
+        PROPOSAL: lambda: sample(compute_salience(premultiplied_planes(pixels))),
         f"sampling to {POINTS} points": lambda: sample(salience, n_points=POINTS),
         TRIANGULATION: lambda: delaunay(vertices),
         QHULL: lambda: Delaunay(vertices),

@@ -59,7 +59,7 @@ MODES: Final = (
     Mode("SVG exact", ".svg", {"mode": "exact"}),
     Mode("SVG auto", ".svg", {"mode": "auto"}),
     Mode("SVG flat", ".svg", {"mode": "flat"}),
-    Mode("SVG underlay", ".svg", {"seams": "underlay"}),
+    Mode("SVG trapping", ".svg", {"seams": "trapping"}),
     Mode("PDF exact", ".pdf"),
     Mode("PDF cairo", ".pdf", {"backend": "cairo"}),
 )

@@ -168,12 +168,12 @@ def test_a_drawing_is_fitted_to_a_photograph_of_its_size(file: Path, tmp_path: P
     assert "600 x 400 pixels, got 300 x 200" in message
 
 
-def test_edges_of_a_drawing_are_crisp_or_have_an_underlay(file: Path, tmp_path: Path) -> None:
+def test_edges_of_a_drawing_are_crisp_or_trapped(file: Path, tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
-    for seams, is_crisp in (("crisp", True), ("underlay", False)):
+    for seams, is_crisp in (("crisp", True), ("trapping", False)):
         succeed("to-svg", file, drawing, "--seams", seams)
         assert (b"crispEdges" in drawing.read_bytes()) == is_crisp
-    message = fail(2, "to-svg", file, drawing, "--seams", "underlay", "--mode", "auto")
+    message = fail(2, "to-svg", file, drawing, "--seams", "trapping", "--mode", "auto")
     assert "crisp edges" in message
 
 

@@ -27,7 +27,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.codec.reader import loads
 from vmesh.codec.writer import dumps
 from vmesh.encoder.colors import sample_colors
-from vmesh.encoder.image import as_image, visible_planes
+from vmesh.encoder.image import as_image, premultiplied_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.settings import MAX_EFFORT, Settings
 from vmesh.formats.raster.picture import flatten
@@ -469,9 +469,9 @@ def test_the_picture_is_left_as_it_is() -> None:
     assert np.array_equal(picture, before)
 
 
-def test_visible_planes_are_multiplied_by_alpha() -> None:
+def test_premultiplied_planes_are_multiplied_by_alpha() -> None:
     picture = np.array([[[200, 100, 0, 255], [200, 100, 0, 0], [200, 101, 1, 128]]], np.uint8)
-    assert visible_planes(picture)[:, 0].tolist() == [
+    assert premultiplied_planes(picture)[:, 0].tolist() == [
         [200, 0, 100], [100, 0, 51], [0, 0, 1], [255, 0, 128],
     ]  # fmt: skip
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from vmesh.arrays import UInt8Array, UInt16Array
-from vmesh.encoder.image import visible_planes
+from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.salience import ONE, compute_salience
 from vmesh.encoder.sampling import diffusion_tables, sample
 from vmesh.encoder.settings import Diffusion, Sampler
 
 
 def salience_of(picture: UInt8Array) -> UInt16Array:
-    return compute_salience(visible_planes(picture))
+    return compute_salience(premultiplied_planes(picture))
 
 
 @pytest.mark.parametrize("sampler", ["multiclass", "channels"])

@@ -142,13 +142,13 @@ def test_what_is_merged_is_drawn_as_one_region_with_its_holes(tmp_path: Path) ->
         {"merge": -1},
         {"merge": 1, "mode": "exact"},
         {"seams": "none"},
-        {"seams": "underlay", "mode": "auto"},
+        {"seams": "trapping", "mode": "auto"},
     ],
 )
 def test_options_without_sense_are_refused(
     detailed: vmesh.Mesh, option: dict[str, Any], tmp_path: Path
 ) -> None:
-    with pytest.raises(ValueError, match=r"expected|merged|underlay"):
+    with pytest.raises(ValueError, match=r"expected|merged|trapping"):
         vmesh.export(detailed, tmp_path / "a.svg", **option)
     assert not list(tmp_path.iterdir())
 
@@ -241,12 +241,12 @@ def smoothed(path: Path) -> Path:
 
 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
-def test_an_underlay_hides_the_seams_of_smooth_edges(
+def test_trapping_hides_the_seams_of_smooth_edges(
     drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
 ) -> None:
     draw = SVG_RENDERERS[renderer]
-    path = tmp_path / "underlay.svg"
-    vmesh.export(detailed, path, seams="underlay")
+    path = tmp_path / "trapping.svg"
+    vmesh.export(detailed, path, seams="trapping")
     assert b"shape-rendering" not in path.read_bytes()
     for scale in (1, 3):
         crisp = compare(draw(smoothed(drawings["gradient"]), scale), detailed, scale)
@@ -255,12 +255,12 @@ def test_an_underlay_hides_the_seams_of_smooth_edges(
 
 
 @pytest.mark.parametrize("renderer", BLENDING)
-def test_exact_drawings_have_an_underlay_too(
+def test_exact_drawings_are_trapped_too(
     drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
 ) -> None:
     draw = SVG_RENDERERS[renderer]
-    path = tmp_path / "underlay.svg"
-    vmesh.export(detailed, path, mode="exact", seams="underlay")
+    path = tmp_path / "trapping.svg"
+    vmesh.export(detailed, path, mode="exact", seams="trapping")
     crisp = compare(draw(smoothed(drawings["exact"]), 2), detailed, 2)
     found = compare(draw(path, 2), detailed, 2)
     assert found.inside <= 1.0
@@ -467,7 +467,7 @@ STYLES: dict[str, dict[str, Any]] = {
     "exact": {"mode": "exact"},
     "auto": {"mode": "auto"},
     "flat": {"mode": "flat"},
-    "underlay": {"mode": "exact", "seams": "underlay"},
+    "trapping": {"mode": "exact", "seams": "trapping"},
 }
 VOCABULARY = etree.RelaxNG(etree.parse(Path(__file__).with_name("svg-vocabulary.rng")))
 

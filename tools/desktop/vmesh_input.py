@@ -8,5 +8,5 @@ import subprocess
 import sys
 
 if __name__ == "__main__":
-    command = ["vmesh", "to-svg", sys.argv[-1], "-", "--seams", "underlay"]
+    command = ["vmesh", "to-svg", sys.argv[-1], "-", "--seams", "trapping"]
     sys.exit(subprocess.run(command, check=False).returncode)

@@ -41,10 +41,10 @@ from vmesh.formats.svg.style import Style
 )
 @click.option(
     "--seams",
-    type=click.Choice(("crisp", "underlay")),
+    type=click.Choice(("crisp", "trapping")),
     default="crisp",
     show_default=True,
-    help="How no seams show; underlay is for programs that smooth all edges, as Qt and Skia.",
+    help="How no seams show; trapping is for programs that smooth all edges, as Qt and Skia.",
 )
 @click.option(
     "--fit",

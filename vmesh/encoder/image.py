@@ -57,7 +57,7 @@ def with_hidden_colors_replaced(image: SampleArray) -> SampleArray:
     return filled
 
 
-def visible_planes(image: SampleArray) -> SampleArray:
+def premultiplied_planes(image: SampleArray) -> SampleArray:
     """Planes of a picture, shape (c, h, w), colours multiplied by alpha."""
     planes = np.ascontiguousarray(image.transpose(2, 0, 1))
     if len(planes) == 4:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vmesh.arrays import SampleArray, UInt16Array
-from vmesh.encoder.image import visible_planes
+from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import Samples, sample
 from vmesh.encoder.settings import Settings
@@ -26,7 +26,7 @@ def propose(image: SampleArray, settings: Settings) -> tuple[UInt16Array, Sample
     samples : Samples
     """
     height, width = image.shape[:2]
-    salience = compute_salience(visible_planes(image), settings.gamma)
+    salience = compute_salience(premultiplied_planes(image), settings.gamma)
     samples = sample(
         salience,
         n_points=settings.n_vertices(width, height),

@@ -11,7 +11,7 @@ from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.draft import UNIT
 from vmesh.encoder.effort import Effort
-from vmesh.encoder.image import peak_of, visible_planes
+from vmesh.encoder.image import peak_of, premultiplied_planes
 from vmesh.encoder.independent_sets import independent_sets
 from vmesh.encoder.rate_model import flip_cost, lambda_of
 from vmesh.encoder.threads import Run, run_here, shares
@@ -71,7 +71,7 @@ class Remesher:
         # A round takes little time on a small picture, so it may gain little.
         self._least_gain = effort.least_gain * min(1.0, image.shape[0] * image.shape[1] / 2**18)
         # Colours count as much as they can be seen: all components, alpha among them, alike.
-        self._picture = np.ascontiguousarray(visible_planes(image).transpose(1, 2, 0))
+        self._picture = np.ascontiguousarray(premultiplied_planes(image).transpose(1, 2, 0))
         self._weights = np.ones(image.shape[:2])
         self._workspace = self._make_workspace()
         colors = sample_colors(self._picture, vertices, UNIT)

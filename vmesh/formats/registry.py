@@ -99,7 +99,7 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
         Replaced only when the new file is complete.
     **options
         For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
-        with a ``tolerance`` in levels, or "flat", ``merge``, ``seams``, "crisp" or "underlay",
+        with a ``tolerance`` in levels, or "flat", ``merge``, ``seams``, "crisp" or "trapping",
         ``fit``, the photograph as an array, and ``width`` or ``height``, such as "210mm" or "100%";
         for PDF ``page_width``, such as "210mm", and ``backend``, "native" or "cairo"; for PLY
         ``ascii``, true for text.

@@ -63,9 +63,9 @@ def write_svg(
     merge : float
         In mode "gradient", neighbours share one gradient where that adds less than this to the
         squared error, summed over pixels and channels.
-    seams : {"crisp", "underlay"}
+    seams : {"crisp", "trapping"}
         How no seams show: edges that are not smoothed, or regions that reach under their
-        neighbours, for programs that smooth all edges. Not "underlay" in mode "auto".
+        neighbours, for programs that smooth all edges. Not "trapping" in mode "auto".
     fit : ndarray, optional
         The photograph that the mesh was made of, as :func:`vmesh.encode` takes it, in the size of
         the canvas: gradients are fitted to its pixels instead of to the mesh.

@@ -74,13 +74,13 @@ def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
     # that they win them on the first layer as they do on those that only they are on.
     order = order[np.argsort(split[order], kind="stable")]
     regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
-    lapped = style.seams == "underlay"
-    outlines = outlines_of(mesh, regions, lapped=lapped)
+    trapped = style.seams == "trapping"
+    outlines = outlines_of(mesh, regions, trapped=trapped)
     layers = [Layer(outlines, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
     if split.any():
         if not split.all():
             numbers = np.where(split, np.cumsum(split) - 1, -1)
-            outlines = outlines_of(mesh, numbers[regions], lapped=lapped)
+            outlines = outlines_of(mesh, numbers[regions], trapped=trapped)
         parts = moments.take(np.flatnonzero(split))
         for channel in (1, 2):
             fits = Slopes.fitted(parts.of_channel(channel, np.ones(len(parts.weights), dtype=bool)))

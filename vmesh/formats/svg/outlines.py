@@ -64,7 +64,7 @@ class Outlines:
         boxes: Int64Array = np.concatenate([low, extent], axis=1)
         return boxes
 
-    def lapped(self, sides: Int64Array, places: Int64Array) -> Outlines:
+    def trapped(self, sides: Int64Array, places: Int64Array) -> Outlines:
         """The same with sides drawn out to a place each; a side has the number of its corner."""
         corners = np.insert(self.corners, sides + 1, places, axis=0)
         bounds = np.insert(self.bounds, sides + 1, self.bounds[sides], axis=0)
@@ -87,7 +87,7 @@ class Outlines:
         return texts
 
 
-def outlines_of(mesh: Mesh, regions: Int64Array, *, lapped: bool = False) -> Outlines:
+def outlines_of(mesh: Mesh, regions: Int64Array, *, trapped: bool = False) -> Outlines:
     """Outlines of regions, which are painted in the order of their numbers.
 
     Parameters
@@ -95,7 +95,7 @@ def outlines_of(mesh: Mesh, regions: Int64Array, *, lapped: bool = False) -> Out
     mesh : Mesh
     regions : ndarray
         Shape (m,), int64: the region of each triangle, or -1 for none.
-    lapped : bool
+    trapped : bool
         Whether regions reach under those that are painted after them.
     """
     twins = find_twins(mesh.triangles, mesh.n_vertices)
@@ -108,9 +108,9 @@ def outlines_of(mesh: Mesh, regions: Int64Array, *, lapped: bool = False) -> Out
     vertices = mesh.vertices.astype(np.int64)
     corners = vertices[mesh.triangles.ravel()[ordered]]
     outlines = Outlines(corners, loops, own[ordered[loops]], corners)
-    if not lapped:
+    if not trapped:
         return outlines
     under = np.flatnonzero(across[ordered] > own[ordered])
     above = mesh.triangles[twins[ordered[under]] // 3]
     middles = (2 * vertices[above].sum(axis=1) + 3) // 6
-    return outlines.lapped(under, middles)
+    return outlines.trapped(under, middles)

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 Mode = Literal["gradient", "exact", "auto", "flat"]
-Seams = Literal["crisp", "underlay"]
+Seams = Literal["crisp", "trapping"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,8 @@ class Style:
         if self.merge and self.mode != "gradient":
             raise ValueError(f"regions are merged in mode gradient only, got mode {self.mode}")
         # Screening is no sum where smooth edges of split and whole triangles meet.
-        if self.seams == "underlay" and self.mode == "auto":
-            raise ValueError("mode auto needs crisp edges: no seams by underlay")
+        if self.seams == "trapping" and self.mode == "auto":
+            raise ValueError("mode auto needs crisp edges: no trapping")
 
     @property
     def n_stages(self) -> int:
