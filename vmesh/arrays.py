@@ -16,5 +16,3 @@ Int32Array: TypeAlias = npt.NDArray[np.int32]
 Int64Array: TypeAlias = npt.NDArray[np.int64]
 Float64Array: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
-AnyIntArray: TypeAlias = npt.NDArray[Any]
-"""Indices: int32 or int64; kernels that take either are compiled for each."""

@@ -37,10 +37,10 @@ def as_faces(triangles: Int32Array) -> list[twins.Face]:
 
 def swept(vertices: Int32Array, order: Int64Array) -> list[twins.Face]:
     """Triangles of a sweep in a given order."""
-    room = np.empty((2 * len(vertices), 3), dtype=np.int32)
+    triangles = np.empty((2 * len(vertices), 3), dtype=np.int64)
     cx, cy = vertices.mean(axis=0).tolist()
-    count = sweep(vertices.astype(np.int64), order, cx, cy, room)
-    return as_faces(sort_triangles(room[:count], len(vertices)))
+    count = sweep(vertices.astype(np.int64), order, cx, cy, triangles)
+    return as_faces(sort_triangles(triangles[:count].astype(np.int32), len(vertices)))
 
 
 def assert_local_rule(points: list[twins.Point], faces: list[twins.Face]) -> None:
@@ -231,14 +231,14 @@ def edges_of(triangles: Int32Array) -> set[tuple[int, int]]:
 
 
 def flipped_back(
-    vertices: Int32Array, triangles: Int32Array, room: int
+    vertices: Int32Array, triangles: Int32Array, capacity: int
 ) -> tuple[int, Int32Array, Int64Array, Int64Array]:
     """Number of flips to Delaunay, the triangles then, and the edges that came and went."""
-    origin = triangles.reshape(-1).copy()
-    created, removed = np.zeros((2, room), dtype=np.int64)
+    origin = triangles.ravel().astype(np.int64)
+    created, removed = np.zeros((2, capacity), dtype=np.int64)
     twin = find_twins(triangles, len(vertices))
     count = flip_to_delaunay(vertices.astype(np.int64), origin, twin, created, removed)
-    return count, origin.reshape(-1, 3), created[:count], removed[:count]
+    return count, origin.reshape(-1, 3).astype(np.int32), created[:count], removed[:count]
 
 
 @given(point_sets(), st.integers(0, 200), st.integers(0, 2**32 - 1))
@@ -248,8 +248,8 @@ def test_flips_lead_from_any_triangulation_to_delaunay(
     _, _, vertices = drawn
     delaunay_triangles = delaunay(vertices)
     triangles = flipped(vertices, delaunay_triangles, n_flips, np.random.default_rng(seed))
-    room = len(vertices) ** 2
-    count, result, created, removed = flipped_back(vertices, triangles, room)
+    capacity = len(vertices) ** 2
+    count, result, created, removed = flipped_back(vertices, triangles, capacity)
     assert count >= 0
     assert np.array_equal(sorted_triangles(result), delaunay_triangles)
     # No edge goes twice, none comes back, and the difference is that of the two triangulations.
@@ -269,15 +269,15 @@ def test_a_delaunay_triangulation_takes_no_flips() -> None:
     assert np.array_equal(result, triangles)
 
 
-def test_more_flips_than_there_is_room_for_are_told() -> None:
+def test_more_flips_than_can_be_held_are_told() -> None:
     random = np.random.default_rng(18)
     vertices = random_grid(random, 9, 9, 0.6)
     triangles = flipped(vertices, delaunay(vertices), 60, random)
     count, _, _, _ = flipped_back(vertices, triangles, 1000)
     assert flipped_back(vertices, triangles, count)[0] == count
     assert count > 1
-    for room in (0, 1, count - 1):
-        assert flipped_back(vertices, triangles, room)[0] == TOO_MANY_FLIPS
+    for capacity in (0, 1, count - 1):
+        assert flipped_back(vertices, triangles, capacity)[0] == TOO_MANY_FLIPS
 
 
 def test_triangles_are_sorted_as_the_mesh_sorts_them() -> None:

@@ -34,7 +34,7 @@ def test_outlines_are_closed_walks_along_all_that_bounds_a_region(
     across = [edges.get((v, u), -1) for u, v in edges]
     inner = np.array([e >= 0 and own[e] == region for e, region in zip(across, own, strict=True)])
     outer = np.flatnonzero(~inner)
-    ordered, loops = walk_outlines(outer, np.array(across, dtype=np.int32), inner)
+    ordered, loops = walk_outlines(outer, np.array(across, dtype=np.int64), inner)
     assert sorted(ordered) == outer.tolist()
     ends = list(edges)
     for loop in np.split(ordered, loops[1:]):

@@ -66,7 +66,7 @@ def build_hierarchy(vertices: Int32Array, triangles: Int32Array) -> Hierarchy:
         raise ValueError("expected the corners of the bounding box among the vertices")
     taken, neighbours, counts, ends = remove_independent_sets(
         vertices.astype(np.int64),
-        triangles.reshape(-1).copy(),
+        triangles.ravel().astype(np.int64),
         find_twins(triangles, len(vertices)),
         is_corner,
         MAX_TRIANGLES,

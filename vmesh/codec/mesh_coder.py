@@ -53,11 +53,10 @@ def find_flips(mesh: Mesh) -> Flips | None:
     None if they are too many for flips to be a good way of coding.
     """
     # A copy: the mesh's own arrays are read-only, for which kernels would be compiled once more.
-    triangles = mesh.triangles.copy()
-    origin = triangles.ravel()
-    twins = find_twins(triangles, mesh.n_vertices)
-    room = min(_MAX_FLIPS * mesh.n_vertices, MAX_FLIPS * origin.size)
-    created, removed = np.zeros((2, room), dtype=np.int64)
+    twins = find_twins(mesh.triangles.copy(), mesh.n_vertices)
+    origin = mesh.triangles.ravel().astype(np.int64)
+    capacity = min(_MAX_FLIPS * mesh.n_vertices, MAX_FLIPS * origin.size)
+    created, removed = np.zeros((2, capacity), dtype=np.int64)
     count = flip_to_delaunay(mesh.vertices.astype(np.int64), origin, twins, created, removed)
     if count < 0:
         return None
@@ -156,8 +155,7 @@ class Encoder:
 
     def flips(self, flips: Flips, implied: Int32Array, mesh: Mesh) -> None:
         """Write the flips that lead from the Delaunay triangles to those of a mesh."""
-        triangles = implied.copy()
-        status = _code_flips(self.coder, self.data, mesh.vertices, triangles, mesh.levels, flips)
+        status, _ = _code_flips(self.coder, self.data, mesh.vertices, implied, mesh.levels, flips)
         assert status == OK, "flips that were found are always coded"
 
     def finish(self) -> bytes:
@@ -228,9 +226,8 @@ class Decoder:
 
     def flips(self, vertices: Int32Array, implied: Int32Array, levels: Int32Array) -> Int32Array:
         """Triangles of shape (m, 3), int32, in canonical order."""
-        triangles = implied.copy()
         none = Flips(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
-        status = _code_flips(self.coder, self.data, vertices, triangles, levels, none)
+        status, triangles = _code_flips(self.coder, self.data, vertices, implied, levels, none)
         self._end("triangles", status)
         return sort_triangles(triangles, len(vertices))
 
@@ -288,16 +285,18 @@ def _code_flips(
     coder: Int64Array,
     data: UInt8Array,
     vertices: Int32Array,
-    triangles: Int32Array,
+    implied: Int32Array,
     levels: Int32Array,
     flips: Flips,
-) -> int:
+) -> tuple[int, Int32Array]:
+    """Status of the coder, and the triangles that the flips lead to, shape (m, 3), int32."""
     model = initial_flip_model()
     points = vertices.astype(np.int64)
-    twins = find_twins(triangles, len(vertices))
+    twins = find_twins(implied, len(vertices))
     luma = np.ascontiguousarray(levels[:, 0])
-    origin = triangles.reshape(-1)
-    return code_flips(coder, data, model, points, luma, origin, twins, *flips)
+    origin = implied.ravel().astype(np.int64)
+    status = code_flips(coder, data, model, points, luma, origin, twins, *flips)
+    return status, origin.reshape(-1, 3).astype(np.int32)
 
 
 def _halving_keys(vertices: Int32Array, columns: int, rows: int) -> Int64Array:

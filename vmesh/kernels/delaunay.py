@@ -40,10 +40,10 @@ TOO_MANY_FLIPS = -2
 @inner_kernel
 def legalize(
     points: Int64Array,
-    origin: Int32Array,
-    twin: Int32Array,
-    hull_edge: Int32Array,
-    stack: Int32Array,
+    origin: Int64Array,
+    twin: Int64Array,
+    hull_edge: Int64Array,
+    stack: Int64Array,
     edge: int,
 ) -> int:
     """Flip until every edge is locally Delaunay again after a point was added; count the flips.
@@ -53,7 +53,7 @@ def legalize(
     edge : int
         The edge opposite to the new point, in the new triangle.
     hull_edge : ndarray
-        Shape (n,), int32: the hull's half-edge that starts at a vertex; flips keep it right.
+        Shape (n,), int64: the hull's half-edge that starts at a vertex; flips keep it right.
     stack : ndarray
         Room for as many edges as the triangulation has triangles: those on it face the new point.
     """
@@ -93,7 +93,7 @@ def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
 
 @kernel
 def sweep(
-    points: Int64Array, order: Int64Array, cx: float, cy: float, triangles: Int32Array
+    points: Int64Array, order: Int64Array, cx: float, cy: float, triangles: Int64Array
 ) -> int:
     """Number of canonical Delaunay triangles of points, written to `triangles`.
 
@@ -106,7 +106,7 @@ def sweep(
     cx, cy : float
         The centre.
     triangles : ndarray
-        Shape (max(2 n, 1), 3), int32: room for the result, positively oriented.
+        Shape (max(2 n, 1), 3), int64: capacity for the result, positively oriented.
 
     Returns
     -------
@@ -118,13 +118,13 @@ def sweep(
     if n_points < 3:
         return 0
     origin = triangles.reshape(-1)
-    twin = np.full(origin.shape[0], -1, np.int32)
-    stack = np.empty(triangles.shape[0], np.int32)
-    hull_edge = np.full(n_points, -1, np.int32)
-    hull_next = np.full(n_points, -1, np.int32)  # -1: not on the hull
-    hull_prev = np.full(n_points, -1, np.int32)
+    twin = np.full(origin.shape[0], -1, np.int64)
+    stack = np.empty(triangles.shape[0], np.int64)
+    hull_edge = np.full(n_points, -1, np.int64)
+    hull_next = np.full(n_points, -1, np.int64)  # -1: not on the hull
+    hull_prev = np.full(n_points, -1, np.int64)
     n_keys = int(np.ceil(np.sqrt(n_points)))
-    hull_hash = np.full(n_keys, -1, np.int32)
+    hull_hash = np.full(n_keys, -1, np.int64)
 
     # The first three points that are not on a line. Those passed over lie on the line of the
     # first two, beyond their segment, so they are outside the first triangle as well.
@@ -209,8 +209,8 @@ def sweep(
 @kernel
 def flip_to_delaunay(
     points: Int64Array,
-    origin: Int32Array,
-    twin: Int32Array,
+    origin: Int64Array,
+    twin: Int64Array,
     created: Int64Array,
     removed: Int64Array,
 ) -> int:
@@ -225,7 +225,7 @@ def flip_to_delaunay(
     points : ndarray
         Shape (n, 2), int64, in raster order.
     origin, twin : ndarray
-        Shape (3 m,), int32: half-edges; overwritten.
+        Shape (3 m,), int64: half-edges; overwritten.
     created, removed : ndarray
         Room for the flips: the edge that each one made and the one that it took away, the lower
         vertex in the upper 32 bits.
@@ -236,7 +236,7 @@ def flip_to_delaunay(
         Number of flips, TOO_MANY_FLIPS if there is no room for them.
     """
     n_edges = origin.shape[0]
-    stack = np.empty(n_edges, np.int32)
+    stack = np.empty(n_edges, np.int64)
     waiting = np.zeros(n_edges, np.bool_)
     size = 0
     for inner in range(n_edges):
@@ -293,16 +293,16 @@ def delaunay(vertices: Int32Array) -> Int32Array:
         each: photographs take about four, a hostile file could ask for a number that is squared.
     """
     points = vertices.astype(np.int64)
-    room = np.empty((max(2 * len(points), 1), 3), dtype=np.int32)
     if len(points) < 3:
-        return room[:0]
+        return np.empty((0, 3), dtype=np.int32)
+    triangles = np.empty((max(2 * len(points), 1), 3), dtype=np.int64)
     doubled_center = points.min(axis=0) + points.max(axis=0)
     offsets = 2 * points - doubled_center
     order = np.argsort((offsets * offsets).sum(axis=1))
     cx, cy = (doubled_center / 2).tolist()
-    count = sweep(points, order, cx, cy, room)
+    count = sweep(points, order, cx, cy, triangles)
     if count == COINCIDENT:
         raise ValueError("two vertices share a position")
     if count == TOO_MANY_FLIPS:
         raise LimitError(f"the triangulation of {len(points)} vertices takes too many edge flips")
-    return sort_triangles(room[:count], len(points))
+    return sort_triangles(triangles[:count].astype(np.int32), len(points))

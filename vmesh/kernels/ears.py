@@ -15,7 +15,7 @@ O. Devillers, "On deletion in Delaunay triangulations", 1999.
 
 from __future__ import annotations
 
-from vmesh.arrays import AnyIntArray, Int64Array
+from vmesh.arrays import Int64Array
 from vmesh.kernels.half_edges import link, place_triangle
 from vmesh.kernels.jit import inner_kernel
 from vmesh.kernels.predicates import in_circle_float, is_within, orient
@@ -24,10 +24,10 @@ from vmesh.kernels.predicates import in_circle_float, is_within, orient
 @inner_kernel
 def clip_ears(
     points: Int64Array,
-    ring: AnyIntArray,
+    ring: Int64Array,
     size: int,
-    left: AnyIntArray,
-    ears: AnyIntArray,
+    left: Int64Array,
+    ears: Int64Array,
     exact: bool,
 ) -> int:
     """Number of triangles that fill a ring, -1 if none of its places is an ear.
@@ -82,13 +82,13 @@ def clip_ears(
 
 @inner_kernel
 def fill_star(
-    origin: AnyIntArray,
-    twin: AnyIntArray,
-    leaving: AnyIntArray,
-    star: AnyIntArray,
-    ring: AnyIntArray,
-    outer: AnyIntArray,
-    ears: AnyIntArray,
+    origin: Int64Array,
+    twin: Int64Array,
+    leaving: Int64Array,
+    star: Int64Array,
+    ring: Int64Array,
+    outer: Int64Array,
+    ears: Int64Array,
     count: int,
 ) -> None:
     """Put the triangles of some ears in place of the first of a star.

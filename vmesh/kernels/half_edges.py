@@ -18,7 +18,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from vmesh.arrays import AnyIntArray, BoolArray, Int32Array, Int64Array
+from vmesh.arrays import BoolArray, Int32Array, Int64Array
 from vmesh.kernels.jit import inner_kernel, kernel
 
 Index: TypeAlias = int | np.integer
@@ -37,7 +37,7 @@ def previous_edge(e: Index) -> int:
 
 
 @inner_kernel
-def link(twin: AnyIntArray, e: Index, f: Index) -> None:
+def link(twin: Int64Array, e: Index, f: Index) -> None:
     """Make two half-edges each other's twin; either may be -1."""
     if e >= 0:
         twin[e] = f
@@ -46,9 +46,7 @@ def link(twin: AnyIntArray, e: Index, f: Index) -> None:
 
 
 @inner_kernel
-def place_triangle(
-    origin: AnyIntArray, leaving: AnyIntArray, t: int, a: int, b: int, c: int
-) -> None:
+def place_triangle(origin: Int64Array, leaving: Int64Array, t: int, a: int, b: int, c: int) -> None:
     """Make t the triangle a, b, c; what is across its sides is left as it was."""
     e = 3 * t
     origin[e], origin[e + 1], origin[e + 2] = a, b, c
@@ -56,7 +54,7 @@ def place_triangle(
 
 
 @inner_kernel
-def flip(origin: Int32Array, twin: Int32Array, e: Index) -> None:
+def flip(origin: Int64Array, twin: Int64Array, e: Index) -> None:
     """Turn the diagonal of the two triangles at half-edge e.
 
     Before, e runs from b to c and the triangles are (b, c, a) and (c, b, d); after, e's triangle
@@ -76,7 +74,7 @@ def flip(origin: Int32Array, twin: Int32Array, e: Index) -> None:
 
 @inner_kernel
 def collect_ring(
-    origin: AnyIntArray, twin: AnyIntArray, start: int, star: AnyIntArray, ring: AnyIntArray
+    origin: Int64Array, twin: Int64Array, start: int, star: Int64Array, ring: Int64Array
 ) -> tuple[int, int]:
     """Neighbours of a vertex, into `ring`, and the half-edges that leave it, into `star`.
 
@@ -108,8 +106,8 @@ def collect_ring(
 
 
 @kernel
-def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
-    """Half-edge across each half-edge, shape (3 m,), int32; -1 on the border.
+def find_twins(triangles: Int32Array, n_vertices: int) -> Int64Array:
+    """Half-edge across each half-edge, shape (3 m,), int64; -1 on the border.
 
     `triangles` has shape (m, 3), int32, and no two of them on the same side of an edge.
     """
@@ -121,14 +119,14 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
     for v in range(n_vertices):
         starts[v + 1] += starts[v]
     filled = starts.copy()
-    leaving = np.empty(origin.shape[0], np.int32)
+    leaving = np.empty(origin.shape[0], np.int64)
     for e in range(origin.shape[0]):
         leaving[filled[origin[e]]] = e
         filled[origin[e]] += 1
-    twin = np.full(origin.shape[0], -1, np.int32)
+    twin = np.full(origin.shape[0], -1, np.int64)
     # Those that leave a vertex, by their ends; what is left of other vertices starts elsewhere.
     # So a vertex of very many triangles costs no more than its share.
-    to = np.full(n_vertices, -1, np.int32)
+    to = np.full(n_vertices, -1, np.int64)
     for v in range(n_vertices):
         for i in range(starts[v], starts[v + 1]):
             e = leaving[i]
@@ -143,7 +141,7 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int32Array:
 
 @kernel
 def walk_outlines(
-    starts: Int64Array, twins: Int32Array, inner: BoolArray
+    starts: Int64Array, twins: Int64Array, inner: BoolArray
 ) -> tuple[Int64Array, Int64Array]:
     """Loops of half-edges around regions of triangles.
 
@@ -152,7 +150,7 @@ def walk_outlines(
     starts : ndarray
         Shape (k,), int64: the half-edges on outlines; a loop starts at the first that is left.
     twins : ndarray
-        Shape (3 m,), int32: as by :func:`find_twins`.
+        Shape (3 m,), int64: as by :func:`find_twins`.
     inner : ndarray
         Shape (3 m,), bool: whether the region goes on across a half-edge.
 

@@ -22,15 +22,15 @@ from vmesh.kernels.jit import inner_kernel, kernel
 @inner_kernel
 def remove_vertex(
     points: Int64Array,
-    origin: Int32Array,
-    twin: Int32Array,
-    leaving: Int32Array,
+    origin: Int64Array,
+    twin: Int64Array,
+    leaving: Int64Array,
     v: int,
-    star: Int32Array,
-    ring: Int32Array,
-    outer: Int32Array,
-    places: Int32Array,
-    ears: Int32Array,
+    star: Int64Array,
+    ring: Int64Array,
+    outer: Int64Array,
+    places: Int64Array,
+    ears: Int64Array,
 ) -> None:
     """Take a vertex out and fill the hole that is left with canonical Delaunay triangles.
 
@@ -50,7 +50,7 @@ def remove_vertex(
 
 @kernel
 def remove_independent_sets(
-    points: Int64Array, origin: Int32Array, twin: Int32Array, kept: BoolArray, max_triangles: int
+    points: Int64Array, origin: Int64Array, twin: Int64Array, kept: BoolArray, max_triangles: int
 ) -> tuple[Int32Array, Int32Array, Int64Array, Int64Array]:
     """Layers of independent vertices, taken out of a triangulation until none is left.
 
@@ -63,7 +63,7 @@ def remove_independent_sets(
     points : ndarray
         Shape (n, 2), int64, in raster order.
     origin, twin : ndarray
-        Shape (3 m,), int32: half-edges of the canonical Delaunay triangles; overwritten.
+        Shape (3 m,), int64: half-edges of the canonical Delaunay triangles; overwritten.
     kept : ndarray
         Shape (n,), bool: vertices that are not taken. Those that are left at the end must be the
         corners of a rectangle that holds all others.
@@ -80,7 +80,7 @@ def remove_independent_sets(
         Where the layers end among those taken, int64.
     """
     n_points = points.shape[0]
-    leaving = np.full(n_points, -1, np.int32)
+    leaving = np.full(n_points, -1, np.int64)
     for e in range(origin.shape[0]):
         leaving[origin[e]] = e
     left = np.arange(n_points).astype(np.int32)
@@ -90,9 +90,9 @@ def remove_independent_sets(
     ends = np.empty(n_points, np.int64)
     is_taken = np.zeros(n_points, np.bool_)
     beside = np.full(n_points, -1, np.int32)  # the last layer that took a neighbour
-    star = np.empty(max_triangles, np.int32)
-    ring, outer = np.empty(max_triangles + 1, np.int32), np.empty(max_triangles + 1, np.int32)
-    places, ears = np.empty(max_triangles + 1, np.int32), np.empty((max_triangles, 3), np.int32)
+    star = np.empty(max_triangles, np.int64)
+    ring, outer = np.empty(max_triangles + 1, np.int64), np.empty(max_triangles + 1, np.int64)
+    places, ears = np.empty(max_triangles + 1, np.int64), np.empty((max_triangles, 3), np.int64)
     n_taken, n_layers, before = 0, 0, -1
     while n_taken > before:
         before = n_taken
@@ -109,8 +109,8 @@ def remove_independent_sets(
                 is_taken[v] = True
                 n_taken += 1
         for i in range(before, n_taken):
-            v = taken[i]
-            remove_vertex(points, origin, twin, leaving, v, star, ring, outer, places, ears)
+            gone = int(taken[i])
+            remove_vertex(points, origin, twin, leaving, gone, star, ring, outer, places, ears)
         left = left[~is_taken[left]]
         ends[n_layers] = n_taken
         n_layers += 1

@@ -25,14 +25,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Int32Array, UInt8Array
+from vmesh.arrays import BoolArray, Int32Array, Int64Array, UInt8Array
 from vmesh.kernels.jit import inner_kernel, kernel
 
 NO_SIDE = -1
 
 
 @kernel
-def find_strips(triangles: Int32Array, twins: Int32Array) -> tuple[UInt8Array, Int32Array]:
+def find_strips(triangles: Int32Array, twins: Int64Array) -> tuple[UInt8Array, Int32Array]:
     """Flags and vertices that write every triangle once.
 
     Parameters
@@ -40,7 +40,7 @@ def find_strips(triangles: Int32Array, twins: Int32Array) -> tuple[UInt8Array, I
     triangles : ndarray
         Shape (m, 3), int32.
     twins : ndarray
-        Shape (3 m,), int32: the half-edge across each half-edge, -1 on the border.
+        Shape (3 m,), int64: the half-edge across each half-edge, -1 on the border.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def find_strips(triangles: Int32Array, twins: Int32Array) -> tuple[UInt8Array, I
 
 
 @kernel
-def _cover(twins: Int32Array, n_triangles: int) -> Int32Array:
+def _cover(twins: Int64Array, n_triangles: int) -> Int32Array:
     """Paths through all triangles, one after the other, shape (m, 2), int32.
 
     Each row is a triangle and its half-edge towards the one before, -1 where a path begins.
@@ -84,7 +84,7 @@ def _cover(twins: Int32Array, n_triangles: int) -> Int32Array:
 
 
 @inner_kernel
-def _best_way(t: int, twins: Int32Array, drawn: BoolArray) -> int:
+def _best_way(t: int, twins: Int64Array, drawn: BoolArray) -> int:
     """Half-edge by which to enter the neighbour that has fewest ways on, -1 if none is left."""
     best = NO_SIDE
     fewest = 4

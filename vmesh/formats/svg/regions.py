@@ -187,7 +187,7 @@ def merge(mesh: Mesh, moments: Moments, largest: float) -> tuple[Int64Array, Mom
 
 def _neighbors(mesh: Mesh) -> Int64Array:
     """Pairs of triangles that share a side, shape (k, 2), the lower first."""
-    twins = find_twins(mesh.triangles, mesh.n_vertices).astype(np.int64)
+    twins = find_twins(mesh.triangles, mesh.n_vertices)
     half_edges = np.arange(len(twins))
     inner = twins > half_edges
     return np.stack([half_edges[inner] // 3, twins[inner] // 3], axis=1)

@@ -54,8 +54,8 @@ def code_flips(
     model: Int64Array,
     points: Int64Array,
     levels: Int32Array,
-    origin: Int32Array,
-    twin: Int32Array,
+    origin: Int64Array,
+    twin: Int64Array,
     removed: Int64Array,
     created: Int64Array,
 ) -> int:
@@ -75,7 +75,7 @@ def code_flips(
     levels : ndarray
         Shape (n,), int32: luma.
     origin, twin : ndarray
-        Shape (3 m,), int32: half-edges of the canonical Delaunay triangles; on return those of
+        Shape (3 m,), int64: half-edges of the canonical Delaunay triangles; on return those of
         the coded mesh.
     removed, created : ndarray
         Shape (k,), int64: when writing, the flips to make, as pairs of the edge that goes, in
@@ -88,7 +88,7 @@ def code_flips(
     """
     n_edges = origin.shape[0]
     # A ring of places: an edge waits once at most.
-    queue = np.empty(n_edges, np.int32)
+    queue = np.empty(n_edges, np.int64)
     waiting = np.zeros(n_edges, np.bool_)
     size, at, n_first = 0, 0, 0
     for inner in range(n_edges):
