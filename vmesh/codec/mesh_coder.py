@@ -17,7 +17,8 @@ from vmesh.errors import FormatError
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay, flip_to_delaunay, sort_triangles
 from vmesh.kernels.half_edges import find_twins
-from vmesh.mesh import Mesh, raster_keys
+from vmesh.mesh import Mesh
+from vmesh.mesh.canonical_order import raster_keys
 
 # Zero bytes that a writer may cut off the end: as many as the coder holds in advance. So what a
 # stream can hold is bounded by its length.

@@ -16,7 +16,8 @@ from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.grid import Grid, Tile
 from vmesh.kernels.delaunay import delaunay
-from vmesh.mesh import Mesh, raster_keys, sorted_triangles
+from vmesh.mesh import Mesh
+from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 
 
 def cut(mesh: Mesh, grid: Grid) -> list[Mesh]:
