@@ -12,9 +12,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from importlib import import_module
 from operator import index
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -257,13 +255,15 @@ class Mesh:
 
     def _repr_png_(self) -> bytes:
         """The picture, for notebooks."""
-        png: bytes = _preview().png_preview(self)
-        return png
+        from vmesh.formats.preview import png_preview
+
+        return png_preview(self)
 
     def _repr_svg_(self) -> str | None:
         """The drawing, for notebooks, if it has few triangles."""
-        svg: str | None = _preview().svg_preview(self)
-        return svg
+        from vmesh.formats.preview import svg_preview
+
+        return svg_preview(self)
 
 
 def _frozen(array: npt.ArrayLike, dtype: npt.DTypeLike, name: str) -> npt.NDArray[np.integer]:
@@ -280,8 +280,3 @@ def _frozen(array: npt.ArrayLike, dtype: npt.DTypeLike, name: str) -> npt.NDArra
     copy: npt.NDArray[np.integer] = np.array(given, dtype=dtype, order="C")
     copy.flags.writeable = False
     return copy
-
-
-def _preview() -> ModuleType:
-    """What draws meshes in notebooks, by its name: the mesh itself depends on no floor above it."""
-    return import_module("vmesh.formats.preview")

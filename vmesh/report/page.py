@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable
 from html import escape
 from string import Template
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html.document import VIEWER, fill_page
@@ -16,8 +16,10 @@ from vmesh.formats.raster.picture import resize
 from vmesh.formats.raster.rendering import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
-from vmesh.report.study import Study
 from vmesh.report.tables import decibels, parts_table, sizes_table, times_table
+
+if TYPE_CHECKING:
+    from vmesh.report.study import Study
 
 _TITLE: Final = "Photographs and their meshes"
 _FRAME: Final = "border: 0; width: 100%; height: 60rem"

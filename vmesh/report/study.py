@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from importlib import import_module
 from typing import Any, Final
 
 import numpy.typing as npt
@@ -65,9 +64,9 @@ class Study:
 
     def _repr_html_(self) -> str:
         """The page on the photograph, for notebooks."""
-        # By its name, since it is made of studies.
-        frame: str = import_module("vmesh.report.page").frame_of(self)
-        return frame
+        from vmesh.report.page import frame_of
+
+        return frame_of(self)
 
 
 def study(
