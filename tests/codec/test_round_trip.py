@@ -60,7 +60,7 @@ def test_every_way_of_telling_triangles_comes_back(name: str) -> None:
 def test_the_same_mesh_gives_the_same_bytes_in_any_order(name: str) -> None:
     mesh = samples.CASES[name]()
     order = np.random.default_rng(2).permutation(mesh.n_vertices)
-    place = np.argsort(order)
+    place = np.argsort(order).astype(np.int32)
     shuffled = mesh.replaced(
         vertices=mesh.vertices[order],
         levels=mesh.levels[order],

@@ -17,6 +17,7 @@ def square(**changes: Any) -> Mesh:
     vertices = [[0, 0], [4, 0], [0, 4], [4, 4], [2, 2]]
     levels = [[0], [10], [20], [30], [40]]
     mesh = Mesh(4, 4, np.array(vertices), np.array(FAN), np.array(levels), ColorLattice((1,)))
-    return mesh.replaced(
-        **{name: np.array(v) if type(v) is list else v for name, v in changes.items()}
-    )
+    arrays: dict[str, Any] = {
+        name: np.array(value) for name, value in changes.items() if type(value) is list
+    }
+    return mesh.replaced(**{**changes, **arrays})

@@ -25,6 +25,7 @@ from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.mesh_coder import Encoder, encode
 from vmesh.codec.reader import measure
+from vmesh.encoder.settings import Method
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
@@ -95,7 +96,7 @@ def as_askew(piece: Mesh) -> Mesh:
     return piece.replaced(triangles=askew(piece.width).triangles)
 
 
-def picture(height: int, width: int, *components: int, method: str = "blue-noise") -> Mesh:
+def picture(height: int, width: int, *components: int, method: Method = "blue-noise") -> Mesh:
     """What the encoder makes of noise."""
     noise = np.random.default_rng(1).integers(0, 256, (height, width, *components), dtype=np.uint8)
     return vmesh.encode(noise, method=method)

@@ -11,9 +11,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from operator import index
-from typing import Any
+from typing import TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,20 @@ from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 from vmesh.mesh.checks import check_arrays, check_canvas, check_geometry
 from vmesh.mesh.metadata import Metadata
 from vmesh.mesh.placement import Matrix, Placement
+
+
+class MeshFields(TypedDict, total=False):
+    """Fields of a :class:`Mesh`, some of them."""
+
+    width: int
+    height: int
+    vertices: Int32Array
+    triangles: Int32Array
+    levels: Int32Array
+    lattice: ColorLattice
+    subdivision: int
+    metadata: Metadata
+    tile: int | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -229,10 +243,9 @@ class Mesh:
             raise ValueError("the map makes triangles too small for the finest vertex lattice")
         return moved
 
-    def replaced(self, **changes: Any) -> Mesh:
-        """Mesh with some of its fields changed."""
-        values = {item.name: getattr(self, item.name) for item in fields(self)}
-        return Mesh(**{**values, **changes})
+    def replaced(self, **changes: Unpack[MeshFields]) -> Mesh:
+        """Mesh with some of its fields, given by their names, changed."""
+        return replace(self, **changes)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
