@@ -17,6 +17,7 @@ from PIL import Image, ImageFile
 from vmesh.codec import layout
 from vmesh.codec.container import read_ancillary
 from vmesh.codec.metadata import read_metadata
+from vmesh.codec.policy import Strict
 from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
 from vmesh.errors import FormatError, LimitError, VmeshError
@@ -55,7 +56,7 @@ class VmeshImageFile(ImageFile.ImageFile):
         assert self.fp is not None
         start = self.fp.read(_START)
         try:
-            header, _ = layout.read_header(start)
+            header, _ = layout.read_header(start, Strict())
         except FormatError as error:
             raise SyntaxError(str(error)) from None
         is_deep_grey = header.n_components == 1 and header.depth > PLAIN_DEPTH
@@ -169,7 +170,7 @@ def _metadata_of(start: bytes, stream: IO[bytes]) -> Metadata:
             ancillary = read_ancillary(start)
         except FormatError:  # they may be longer
             ancillary = read_ancillary(start + stream.read())
-        return read_metadata(ancillary, DEFAULT_LIMITS, layout.refuse)
+        return read_metadata(ancillary, DEFAULT_LIMITS, Strict())
     except (FormatError, LimitError):
         return Metadata()
 

@@ -24,7 +24,7 @@ from tests.codec.damage import (
 from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.mesh_coder import Encoder, encode
-from vmesh.codec.reader import measure
+from vmesh.codec.reader import read
 from vmesh.encoder.settings import Method
 from vmesh.kernels import entropy
 from vmesh.kernels.delaunay import delaunay
@@ -213,7 +213,7 @@ def largest_canvas() -> Mesh:
 VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=METADATA), 2))
 HEADER, CHUNKS = split(VALID)
 MESH: Final = CHUNKS[-1]
-SIZES: Final = measure(VALID)[1]
+SIZES: Final = read(VALID).sizes
 START: Final = checked(SIGNATURE + HEADER)
 
 
