@@ -47,7 +47,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a source.
+    """Outcome of a task: what became of its source.
 
     Parameters
     ----------

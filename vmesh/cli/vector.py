@@ -1,4 +1,4 @@
-"""What ``vmesh to-svg``, ``to-pdf`` and ``to-html`` have in common."""
+"""Conversion to a vector format, common to ``vmesh to-svg``, ``to-pdf`` and ``to-html``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How good meshes of a photograph are by the size of their files."""
+"""Rate-distortion curve of the meshes of a photograph."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ def frame_of(study: Study) -> str:
 
 
 def section_of(study: Study, number: int) -> str:
-    """What a page says of one photograph, as its section of that number.
+    """Section of a page, by its number, on one photograph.
 
     Names and metadata are text in it and nothing else.
     """
@@ -69,7 +69,7 @@ def section_of(study: Study, number: int) -> str:
 
 
 def _summary(study: Study) -> str:
-    """What the picture is, and what its mesh."""
+    """Summary of the picture and of its mesh."""
     mesh, size, closeness = study.mesh, len(study.data), study.closeness
     about = Description.of(mesh.metadata)
     said = ", ".join(filter(None, (about.title, about.author, about.rights)))
@@ -83,7 +83,7 @@ def _summary(study: Study) -> str:
 
 
 def _absences(study: Study) -> str:
-    """Which codecs have no curve, and why."""
+    """Reasons why some codecs have no curve."""
     return " ".join(
         f"{curve.codec} is left out: it {curve.absence}."
         for curve in study.curves

@@ -38,7 +38,7 @@ _SAMPLE_SIDE: Final = 32
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """What a report says of a photograph.
+    """Study of a photograph: its mesh, and what was measured on both.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
 
 
 def _rivals_of(own: Curve, original: UInt8Array, progress: Progress) -> Iterator[Curve]:
-    """What other codecs make of the bytes of a curve's files."""
+    """Curves of other codecs, at the sizes of a curve's files."""
     budgets = [point.n_bytes for point in own.points]
     for rival in RIVALS:
         progress(rival.name)
