@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels.delaunay import delaunay
-from vmesh.mesh import Mesh, Metadata, sorted_triangles
+from vmesh.mesh import Mesh, Metadata
+from vmesh.mesh.canonical_order import sorted_triangles
 
 MAX_CANVAS = 12
 

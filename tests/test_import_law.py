@@ -3,6 +3,9 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+import tomllib
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -10,6 +13,18 @@ import pytest
 import vmesh
 
 PACKAGE = Path(vmesh.__file__).parent
+LAW = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
+DOWNHILL = next(law for law in LAW["contracts"] if law["type"] == "layers")
+EXCEPTIONS = {tuple(line.split(" -> ")) for line in DOWNHILL["ignore_imports"]}
+
+
+def name_of(path: Path) -> str:
+    """Full name of the module in a file."""
+    parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+MODULES = {name_of(path): path for path in PACKAGE.rglob("*.py")}
 
 
 def modules_after(statement: str) -> set[str]:
@@ -56,15 +71,31 @@ def test_another_name_is_not() -> None:
         vmesh.missing  # noqa: B018
 
 
+def nodes_of(path: Path) -> Iterator[ast.AST]:
+    """All that a file does when it runs: without what is for type checkers only."""
+    waiting: list[ast.AST] = [ast.parse(path.read_text("utf-8"))]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        is_for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        waiting += () if is_for_types else ast.iter_child_nodes(node)
+
+
 def imports_of(path: Path) -> set[str]:
-    """Full names of the modules that a file imports anywhere."""
+    """Full names of the modules that a file imports anywhere, also those named by strings."""
     names = set()
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path.name} imports relatively"
-            names |= {f"{node.module}", *(f"{node.module}.{alias.name}" for alias in node.names)}
+    for node in nodes_of(path):
+        match node:
+            case ast.Import():
+                names |= {alias.name for alias in node.names}
+            case ast.ImportFrom():
+                assert node.level == 0, f"{path.name} imports relatively"
+                found = {f"{node.module}.{alias.name}" for alias in node.names}
+                names |= {name if name in MODULES else f"{node.module}" for name in found}
+            case ast.Call(func=ast.Name("import_module"), args=[ast.Constant(str(name)), *_]):
+                names.add(name)
+            case ast.Constant(str(name)) if "." in name and name in MODULES:  # of a table
+                names.add(name)
     return names
 
 
@@ -87,10 +118,48 @@ def test_matplotlib_waits_until_a_plot_is_drawn() -> None:
     assert "matplotlib" not in modules_after("import vmesh.cli.report, vmesh.report.page")
 
 
-@pytest.mark.parametrize("name", ["mesh.py", "color_lattice.py", "limits.py", "errors.py"])
-def test_the_ground_floor_imports_no_floor_above(name: str) -> None:
-    above = ("vmesh.kernels", "vmesh.codec", "vmesh.encoder", "vmesh.formats", "vmesh.cli")
-    assert not any(module.startswith(above) for module in imports_of(PACKAGE / name))
+def test_an_import_by_a_constant_string_is_an_import(tmp_path: Path) -> None:
+    path = tmp_path / "module.py"
+    path.write_text('def f():\n    import_module("numba").jit\n\nTABLE = {"x": "vmesh.errors"}\n')
+    assert imports_of(path) == {"numba", "vmesh.errors"}
+
+
+def test_an_import_for_type_checkers_is_none(tmp_path: Path) -> None:
+    path = tmp_path / "module.py"
+    path.write_text("if TYPE_CHECKING:\n    import numba\nimport numpy\n")
+    assert imports_of(path) == {"numpy"}
+
+
+def own_imports() -> dict[str, set[str]]:
+    """The package's modules -> those of it that they import, but for the written exceptions."""
+    return {
+        name: {other for other in imports_of(path) if (name, other) not in EXCEPTIONS}
+        & MODULES.keys()
+        for name, path in MODULES.items()
+    }
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    # Raises a CycleError that tells the circle.
+    assert set(TopologicalSorter(own_imports()).static_order()) == MODULES.keys()
+
+
+def test_every_exception_is_an_import() -> None:
+    assert all(other in imports_of(MODULES[name]) for name, other in EXCEPTIONS)
+
+
+def test_imports_run_downhill_also_those_by_strings() -> None:
+    layers = {
+        part: number
+        for number, layer in enumerate(DOWNHILL["layers"])
+        for part in layer.split(" | ")
+    }
+    for name, others in own_imports().items():
+        part = ".".join(name.split(".")[:2])
+        for other in others - {"vmesh"}:  # whose names are those of all layers
+            below = ".".join(other.split(".")[:2])
+            is_downhill = layers[below] > layers.get(part, -1)
+            assert is_downhill or below == part, f"{name} imports {other}"
 
 
 def test_kernels_use_nothing_that_their_cache_does_not_notice() -> None:

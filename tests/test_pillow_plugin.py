@@ -146,7 +146,7 @@ def test_a_thumbnail_is_drawn_small(
         sizes.append(pixels.shape[:2])
         return pixels
 
-    monkeypatch.setattr("vmesh.formats.raster.render", noted)
+    monkeypatch.setattr("vmesh.formats.raster.rendering.render", noted)
     with Image.open(file) as image:
         image.thumbnail((60, 60))
         assert image.size == (60, 40)
@@ -208,6 +208,15 @@ def test_metadata_travel_both_ways() -> None:
     kept = vmesh.loads(again).metadata
     assert (kept.icc, kept.xmp) == (srgb_profile(), b"<x/>")
     assert vmesh.loads(bare).metadata == Metadata()
+
+
+def test_a_misspelt_setting_is_refused_and_options_of_other_formats_are_passed_over() -> None:
+    image = Image.fromarray(PICTURES["ramp"])
+    with pytest.raises(TypeError, match="no option 'vertice': did you mean 'vertices'"):
+        saved(image, vertice=4)
+    assert saved(image, vertices=4, optimize=True, speed=6, dpi=(72, 72)) == saved(
+        image, vertices=4
+    )
 
 
 def test_the_orientation_is_applied_when_an_image_is_saved() -> None:

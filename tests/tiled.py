@@ -9,7 +9,8 @@ import numpy as np
 from vmesh.color_lattice import ColorLattice
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
-from vmesh.mesh import Mesh, raster_keys
+from vmesh.mesh import Mesh
+from vmesh.mesh.canonical_order import raster_keys
 
 
 def tiled(

@@ -30,7 +30,7 @@ from measurement import (
 import vmesh
 from vmesh.codec.layout import LISTED_TRIANGLES, Header
 from vmesh.codec.mesh_coder import encode_mesh
-from vmesh.codec.reader import measure
+from vmesh.codec.reader import read
 from vmesh.mesh import Mesh
 
 DENSITIES: Final = (0.0075, 0.02, 0.04)  # vertices per pixel
@@ -89,7 +89,7 @@ def mesh_of(photograph: Photograph, density: float, effort: int) -> Mesh:
 def measure_sizes(mesh: Mesh, density: float, coders: dict[str, Coder]) -> Sizes:
     """Bits per vertex of everything."""
     data = vmesh.dumps(mesh)
-    same, parts = measure(data)
+    same, parts, _ = read(data)
     parts = {"frame": len(data) - sum(parts.values()), **parts}
     header = Header(
         mesh.width,

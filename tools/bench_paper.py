@@ -29,7 +29,7 @@ from scipy.spatial import Delaunay
 
 import vmesh
 from vmesh.arrays import UInt8Array
-from vmesh.codec.reader import measure
+from vmesh.codec.reader import read
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.salience import compute_salience
@@ -333,7 +333,7 @@ def count_bits(pixels: UInt8Array, density: float) -> tuple[float, float, float]
     """Bits per vertex of the positions, the colors and the whole file."""
     mesh = vmesh.encode(pixels, method="blue-noise", density=density)
     data = vmesh.dumps(mesh)
-    _, sizes = measure(data)
+    sizes = read(data).sizes
     parts = (sizes["positions"], sizes["colors"], len(data))
     positions, colors, whole = (8 * part / mesh.n_vertices for part in parts)
     return positions, colors, whole

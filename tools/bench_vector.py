@@ -32,6 +32,7 @@ from measurement import (
 from tracers import Tracing, tracings_of
 
 import vmesh
+from vmesh.encoder.settings import Method
 from vmesh.formats.raster.picture import flatten
 from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
@@ -39,7 +40,7 @@ from vmesh.metrics import psnr
 
 N_PHOTOGRAPHS: Final = 3
 VERTICES: Final = (1_000, 5_000, 20_000)
-METHODS: Final = ("adaptive", "blue-noise")
+METHODS: Final[tuple[Method, ...]] = ("adaptive", "blue-noise")
 SCALES: Final = (1, 4)
 _ROOT: Final = Path(__file__).resolve().parent.parent
 
@@ -140,7 +141,7 @@ def report_mesh(
     printer: Printer,
     photograph: Photograph,
     n: int,
-    method: str,
+    method: Method,
     renderers: Mapping[str, Mapping[str, Any]],
 ) -> None:
     """Print the table of one mesh: a row for each mode and renderer."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import fields
+from difflib import get_close_matches
 from math import ceil
 from typing import IO, Any, Final
 
@@ -16,6 +17,7 @@ from PIL import Image, ImageFile
 from vmesh.codec import layout
 from vmesh.codec.container import read_ancillary
 from vmesh.codec.metadata import read_metadata
+from vmesh.codec.policy import Strict
 from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
 from vmesh.errors import FormatError, LimitError, VmeshError
@@ -30,6 +32,8 @@ MIME_TYPE: Final = "image/vnd.vmesh"
 _MODES: Final = {1: "L", 3: "RGB", 4: "RGBA"}
 _DEEP_GREY: Final = "I;16"
 _MOST_SAMPLES: Final = 4  # per pixel and direction of a smaller picture
+_METADATA_OPTIONS: Final = ("icc_profile", "exif", "xmp")
+_LIKENESS: Final = 0.9  # of a misspelt setting, by difflib; "speed", of AVIF, is below
 _START: Final = 4096  # bytes of a file that are read first
 
 
@@ -52,7 +56,7 @@ class VmeshImageFile(ImageFile.ImageFile):
         assert self.fp is not None
         start = self.fp.read(_START)
         try:
-            header, _ = layout.read_header(start)
+            header, _ = layout.read_header(start, Strict())
         except FormatError as error:
             raise SyntaxError(str(error)) from None
         is_deep_grey = header.n_components == 1 and header.depth > PLAIN_DEPTH
@@ -118,19 +122,33 @@ class VmeshImageFile(ImageFile.ImageFile):
 
 
 def save(image: Image.Image, stream: IO[bytes], filename: str | bytes) -> None:
-    """Encode an image; fields of :class:`vmesh.Settings` are taken from the options of `save`.
+    """Encode an image; the options of `save` that :func:`vmesh.encode` has are its settings.
 
-    The ICC profile, EXIF and XMP are the image's own unless the options give others. The EXIF
-    orientation is applied.
+    The ICC profile, EXIF and XMP are the image's own unless the options ``icc_profile``, ``exif``
+    and ``xmp`` give others. The EXIF orientation is applied. Options of other formats are passed
+    over, as plug-ins of Pillow do; one that is nearly a setting's name is taken for a slip.
+
+    Raises
+    ------
+    TypeError
+        If an option is a misspelt setting.
     """
     from vmesh.codec.writer import dumps
-    from vmesh.encoder.pipeline import encode
+    from vmesh.encoder.pipeline import encode_with
 
     options = image.encoderinfo
-    names = {field.name for field in fields(Settings)}
-    settings = {name: value for name, value in options.items() if name in names}
+    settings = _settings_of(options)
     picture = picture_of(_with_metadata(image, options))
-    stream.write(dumps(encode(picture.array, metadata=picture.metadata, **settings)))
+    stream.write(dumps(encode_with(picture.array, settings, metadata=picture.metadata)))
+
+
+def _settings_of(options: dict[str, Any]) -> Settings:
+    """Settings among the options of `save`."""
+    names = [field.name for field in fields(Settings)]
+    for option in options.keys() - {*names, *_METADATA_OPTIONS}:
+        for name in get_close_matches(option, names, n=1, cutoff=_LIKENESS):
+            raise TypeError(f"a .vmesh file takes no option {option!r}: did you mean {name!r}?")
+    return Settings(**{name: options[name] for name in names if name in options})
 
 
 def _with_metadata(image: Image.Image, options: dict[str, Any]) -> Image.Image:
@@ -152,7 +170,7 @@ def _metadata_of(start: bytes, stream: IO[bytes]) -> Metadata:
             ancillary = read_ancillary(start)
         except FormatError:  # they may be longer
             ancillary = read_ancillary(start + stream.read())
-        return read_metadata(ancillary, DEFAULT_LIMITS, layout.refuse)
+        return read_metadata(ancillary, DEFAULT_LIMITS, Strict())
     except (FormatError, LimitError):
         return Metadata()
 

@@ -85,5 +85,5 @@ def test_an_error_that_nobody_expects_is_told_by_its_kind(
     def fail(*_: object, **__: object) -> None:
         raise KeyError("what")
 
-    monkeypatch.setattr("vmesh.encoder.pipeline.encode", fail)
+    monkeypatch.setattr("vmesh.encoder.pipeline.encode_with", fail)
     assert run(task).error == "KeyError: 'what'"

@@ -13,7 +13,7 @@ from tests.codec import samples
 from tests.codec.damage import mutant, split, varint
 from tests.strategies import meshes
 from vmesh.arrays import UInt8Array
-from vmesh.codec.reader import loads, measure
+from vmesh.codec.reader import loads, read
 from vmesh.codec.writer import dumps
 from vmesh.encoder.pipeline import encode
 from vmesh.errors import FormatError, PartialFileWarning, VmeshError
@@ -40,7 +40,7 @@ def load_start(data: bytes, length: int) -> Mesh:
 def test_a_longer_start_shows_a_better_picture() -> None:
     image = soft_picture()
     data = dumps(encode(image, vertices=400))
-    _, sizes = measure(data)
+    sizes = read(data).sizes
     first = len(data) - 4 - sizes["colors"] - sizes.get("triangles", 0)
     quality = [
         psnr(image, render(load_start(data, length)))

@@ -29,7 +29,7 @@ from tests.codec.trial import try_file
 from vmesh.arrays import Int32Array
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.mesh_coder import Encoder, Flips, encode
-from vmesh.codec.reader import loads, measure
+from vmesh.codec.reader import loads, read
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError, LimitError, VmeshError
@@ -317,7 +317,7 @@ def test_bytes_after_the_coded_mesh_are_rejected(name: str, code: str) -> None:
 def test_a_mesh_that_is_cut_short_is_rejected_in_the_part_that_lacks_bytes(name: str) -> None:
     data = dumps(samples.CASES[name]())
     content = split(data)[1][0][1]
-    _, sizes = measure(data)
+    sizes = read(data).sizes
     begin = 0
     for part, size in sizes.items():
         # Where a part lacks few bytes at its end, the zeros in their place may pass for it.
@@ -339,7 +339,7 @@ def test_any_bytes_after_the_colors_are_triangles_or_are_refused(
 ) -> None:
     file = dumps(samples.CASES[f"grey, {connectivity}"]())
     content = split(file)[1][0][1]
-    sizes = measure(file)[1]
+    sizes = read(file).sizes
     length = data.draw(st.integers(sizes["positions"] + sizes["colors"], len(content)))
     code = outcome(with_content(file, b"M", content[:length] + rest))
     assert code in {"loaded", "colors", "triangles", "geometry"}
@@ -434,7 +434,7 @@ def test_any_mesh_may_be_listed(name: str) -> None:
     content = mesh_and_then(mesh, listing(mesh.triangles))
     data = with_content(with_header(dumps(mesh), connectivity=1), b"M", content)
     assert loads(data) == mesh
-    assert list(measure(data)[1]) == ["positions", "colors", "triangles"]
+    assert list(read(data).sizes) == ["positions", "colors", "triangles"]
 
 
 # --- limits and metadata -----------------------------------------------------------------------

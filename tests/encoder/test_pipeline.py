@@ -29,7 +29,7 @@ from vmesh.codec.writer import dumps
 from vmesh.encoder.colors import sample_colors
 from vmesh.encoder.image import as_image, premultiplied_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
-from vmesh.encoder.settings import MAX_EFFORT, Settings
+from vmesh.encoder.settings import MAX_EFFORT, Method, Sampler, Settings
 from vmesh.formats.raster.picture import flatten
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Mesh, Metadata
@@ -77,7 +77,7 @@ def test_every_picture_becomes_a_sound_mesh(name: str, goal: dict[str, Any]) -> 
 @pytest.mark.parametrize("sampler", ["multiclass", "channels"])
 @pytest.mark.parametrize("name", PICTURES)
 def test_every_picture_becomes_a_sound_mesh_of_blue_noise(
-    name: str, sampler: str, colors: str
+    name: str, sampler: Sampler, colors: str
 ) -> None:
     chosen: dict[str, Any] = {"method": "blue-noise", "sampler": sampler, "colors": colors}
     goals: tuple[dict[str, Any], ...] = ({}, {"vertices": 4}, {"density": 0.3}, {"density": 1.0})
@@ -174,7 +174,7 @@ def test_the_density_is_met_exactly(cat: UInt8Array, density: float) -> None:
 @pytest.mark.parametrize("sampler", ["multiclass", "channels"])
 @pytest.mark.parametrize("target", [{"vertices": 500}, {"vertices": 4000}, {"density": 0.02}])
 def test_the_number_of_sampled_vertices_is_met_within_two_percent(
-    coffee: UInt8Array, sampler: str, target: dict[str, Any], method: str
+    coffee: UInt8Array, sampler: Sampler, target: dict[str, Any], method: Method
 ) -> None:
     mesh = encode(coffee, method=method, effort=1, sampler=sampler, **target)
     wanted = target.get("vertices") or target["density"] * coffee.shape[0] * coffee.shape[1]
@@ -317,7 +317,7 @@ def test_fitted_colors_are_closer_to_the_picture_than_sampled_ones(coffee: UInt8
 
 
 @pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
-def test_a_finer_color_step_is_closer_to_the_picture(cup: UInt8Array, method: str) -> None:
+def test_a_finer_color_step_is_closer_to_the_picture(cup: UInt8Array, method: Method) -> None:
     reached = [psnr_of(cup, method=method, vertices=500, color_step=step) for step in (64, 16, 1)]
     assert reached == sorted(reached)
     assert encode(cup, method=method, vertices=50, color_step=24).lattice.steps[0] == 24
@@ -354,7 +354,7 @@ def test_a_seed_of_any_size_is_taken(seed: int) -> None:
 
 
 @pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
-def test_a_grey_picture_is_the_same_with_and_without_its_third_dimension(method: str) -> None:
+def test_a_grey_picture_is_the_same_with_and_without_its_third_dimension(method: Method) -> None:
     picture = grey_ramp(20, 30)
     assert encode(picture, method=method) == encode(picture[:, :, None], method=method)
     assert encode(picture, method=method).lattice.n_components == 1
@@ -424,7 +424,7 @@ def test_progress_names_the_search_for_a_size_last() -> None:
 
 
 @pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
-def test_metadata_travel_with_the_mesh(method: str) -> None:
+def test_metadata_travel_with_the_mesh(method: Method) -> None:
     metadata = Metadata(icc=b"profile")
     assert encode(noise(8, 8), method=method, metadata=metadata).metadata == metadata
     assert encode(noise(8, 8), method=method).metadata == Metadata()

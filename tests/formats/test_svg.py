@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gzip
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -44,9 +44,9 @@ def small(coffee: np.ndarray) -> vmesh.Mesh:
 
 
 @pytest.fixture(scope="module")
-def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> dict[Mode, Path]:
     folder = tmp_path_factory.mktemp("svg")
-    paths = {mode: folder / f"{mode}.svg" for mode in ("gradient", "exact", "auto", "flat")}
+    paths: dict[Mode, Path] = {mode: folder / f"{mode}.svg" for mode in get_args(Mode)}
     for mode, path in paths.items():
         vmesh.export(detailed, path, mode=mode)
     return paths
@@ -55,7 +55,7 @@ def drawings(detailed: vmesh.Mesh, tmp_path_factory: pytest.TempPathFactory) -> 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
 @pytest.mark.parametrize(("mode", "least"), [("gradient", 43.0), ("flat", 24.0)])
 def test_a_photograph_is_drawn_closely(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, mode: str, least: float
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, mode: Mode, least: float
 ) -> None:
     drawn = SVG_RENDERERS[renderer](drawings[mode], 1)
     assert psnr(drawn, vmesh.render(detailed)) >= least
@@ -63,7 +63,7 @@ def test_a_photograph_is_drawn_closely(
 
 @pytest.mark.parametrize("renderer", BLENDING)
 def test_flat_triangles_own_the_pixels_that_our_raster_gives_them(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str
 ) -> None:
     shown = vmesh.render(detailed)
     drawn = SVG_RENDERERS[renderer](drawings["flat"], 1)
@@ -83,7 +83,7 @@ def mean_of_pixels(mesh: vmesh.Mesh, shown: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("renderer", BLENDING)
 @pytest.mark.parametrize("scale", [1, 4])
 def test_exact_drawings_are_within_a_level_inside_of_triangles(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, scale: int
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, scale: int
 ) -> None:
     found = compare(SVG_RENDERERS[renderer](drawings["exact"], scale), detailed, scale)
     assert found.inside <= 1.0
@@ -92,7 +92,7 @@ def test_exact_drawings_are_within_a_level_inside_of_triangles(
 
 @pytest.mark.parametrize("renderer", BLENDING)
 def test_mode_auto_keeps_within_its_tolerance(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str
 ) -> None:
     found = compare(SVG_RENDERERS[renderer](drawings["auto"], 4), detailed, 4)
     assert found.inside <= 4.0 + 0.5  # and the rounding of our raster
@@ -100,7 +100,7 @@ def test_mode_auto_keeps_within_its_tolerance(
 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
 def test_merged_regions_take_fewer_bytes_and_stay_close(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "merged.svg"
     vmesh.export(detailed, path, merge=300.0)
@@ -209,7 +209,7 @@ def test_what_is_no_length_is_refused(small: vmesh.Mesh, length: str, tmp_path: 
 
 
 def test_gradients_stay_close_at_four_times_the_size(
-    drawings: dict[str, Path], detailed: vmesh.Mesh
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh
 ) -> None:
     drawn = SVG_RENDERERS["librsvg"](drawings["gradient"], 4)
     assert psnr(drawn, vmesh.render(detailed, scale=4)) >= 43.0
@@ -242,7 +242,7 @@ def smoothed(path: Path) -> Path:
 
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
 def test_trapping_hides_the_seams_of_smooth_edges(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
 ) -> None:
     draw = SVG_RENDERERS[renderer]
     path = tmp_path / "trapping.svg"
@@ -256,7 +256,7 @@ def test_trapping_hides_the_seams_of_smooth_edges(
 
 @pytest.mark.parametrize("renderer", BLENDING)
 def test_exact_drawings_are_trapped_too(
-    drawings: dict[str, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
 ) -> None:
     draw = SVG_RENDERERS[renderer]
     path = tmp_path / "trapping.svg"
@@ -270,9 +270,9 @@ def test_exact_drawings_are_trapped_too(
 @pytest.mark.parametrize("mode", ["gradient", "exact", "auto", "flat"])
 def test_gradients_fitted_to_the_photograph_are_closer_to_it(
     photograph: np.ndarray,
-    drawings: dict[str, Path],
+    drawings: dict[Mode, Path],
     detailed: vmesh.Mesh,
-    mode: str,
+    mode: Mode,
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "fitted.svg"
@@ -374,7 +374,7 @@ def test_nothing_is_drawn_beyond_a_tilted_mesh(
     assert (drawn[outside] == 255).all(axis=1).mean() > 0.97
 
 
-def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[str, Path]) -> None:
+def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[Mode, Path]) -> None:
     root = etree.parse(drawings["gradient"]).getroot()
     assert root.tag == f"{SVG}svg"
     assert root.get("viewBox") == "0 0 300 200"
@@ -387,7 +387,7 @@ def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[str, Path]) -> N
 
 @pytest.mark.parametrize("mode", ["gradient", "flat"])
 def test_every_triangle_has_a_path(
-    detailed: vmesh.Mesh, drawings: dict[str, Path], mode: str
+    detailed: vmesh.Mesh, drawings: dict[Mode, Path], mode: Mode
 ) -> None:
     assert len(etree.parse(drawings[mode]).findall(f".//{SVG}path")) == detailed.n_triangles
 
@@ -424,7 +424,7 @@ def test_progress_names_the_stages_of_each_layer(
 def test_an_unknown_mode_is_refused_and_leaves_no_file(coffee: np.ndarray, tmp_path: Path) -> None:
     mesh = vmesh.encode(coffee, vertices=200)
     with pytest.raises(ValueError, match="mode"):
-        vmesh.export(mesh, tmp_path / "a.svg", mode="round")
+        vmesh.export(mesh, tmp_path / "a.svg", mode="round")  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
 
 
@@ -487,7 +487,7 @@ def test_extreme_meshes_are_drawn_in_every_style(name: str, style: str, tmp_path
 
 
 def test_a_document_with_all_that_it_may_hold_keeps_to_the_vocabulary(
-    drawings: dict[str, Path], tmp_path: Path
+    drawings: dict[Mode, Path], tmp_path: Path
 ) -> None:
     for path in drawings.values():
         VOCABULARY.assertValid(etree.parse(path))

@@ -18,7 +18,7 @@ from vmesh.kernels.delaunay import (
 from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.kernels.predicates import in_circle
 from vmesh.limits import MAX_LATTICE_SIDE
-from vmesh.mesh import sorted_triangles
+from vmesh.mesh.canonical_order import sorted_triangles
 
 
 def random_grid(random: np.random.Generator, columns: int, rows: int, share: float) -> Int32Array:

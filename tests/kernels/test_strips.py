@@ -9,6 +9,7 @@ from hypothesis import given
 import vmesh
 from tests.strategies import meshes
 from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.encoder.settings import Method
 from vmesh.kernels.half_edges import find_twins
 from vmesh.kernels.strips import find_strips
 from vmesh.mesh import Mesh
@@ -40,7 +41,7 @@ def test_strips_draw_every_triangle_once(mesh: Mesh) -> None:
 
 
 @pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
-def test_photographs_take_few_vertices_for_a_triangle(coffee: np.ndarray, method: str) -> None:
+def test_photographs_take_few_vertices_for_a_triangle(coffee: np.ndarray, method: Method) -> None:
     mesh = vmesh.encode(coffee[:200, :300], method=method, vertices=2000)
     flags, _ = strips_of(mesh)
     assert len(flags) / mesh.n_triangles <= 1.10

@@ -31,4 +31,4 @@ def test_a_study_takes_what_the_encoder_takes() -> None:
     with pytest.raises(ValueError, match="shape"):
         vmesh.study(np.zeros((4, 4, 2), np.uint8))
     with pytest.raises(TypeError, match="colour"):
-        vmesh.study(PICTURES["disc"], colour=1)
+        vmesh.study(PICTURES["disc"], colour=1)  # type: ignore[call-arg]

@@ -24,7 +24,8 @@ from tests.codec.damage import (
 from tests.tiled import tiled
 from vmesh.codec.hierarchy import build_hierarchy
 from vmesh.codec.mesh_coder import Encoder, encode
-from vmesh.codec.reader import measure
+from vmesh.codec.reader import read
+from vmesh.encoder.settings import Method
 from vmesh.kernels.coding import range_coder
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
@@ -95,7 +96,7 @@ def as_askew(piece: Mesh) -> Mesh:
     return piece.replaced(triangles=askew(piece.width).triangles)
 
 
-def picture(height: int, width: int, *components: int, method: str = "blue-noise") -> Mesh:
+def picture(height: int, width: int, *components: int, method: Method = "blue-noise") -> Mesh:
     """What the encoder makes of noise."""
     noise = np.random.default_rng(1).integers(0, 256, (height, width, *components), dtype=np.uint8)
     return vmesh.encode(noise, method=method)
@@ -212,7 +213,7 @@ def largest_canvas() -> Mesh:
 VALID: Final = vmesh.dumps(flipped(mesh_of(6, 5, 3, n_vertices=15, metadata=METADATA), 2))
 HEADER, CHUNKS = split(VALID)
 MESH: Final = CHUNKS[-1]
-SIZES: Final = measure(VALID)[1]
+SIZES: Final = read(VALID).sizes
 START: Final = checked(SIGNATURE + HEADER)
 
 

@@ -15,6 +15,7 @@ import yaml
 from tests.spec.kaitai import Reader, parse
 from vmesh.codec import layout
 from vmesh.codec.container import read_file
+from vmesh.codec.policy import Strict
 
 _SPEC: Final = Path(__file__).parents[2] / "spec"
 _KSY: Final = yaml.safe_load((_SPEC / "vmesh.ksy").read_text(encoding="utf-8"))
@@ -75,8 +76,8 @@ def figures_of(file: Any) -> dict[str, Any]:
 
 def expected(data: bytes) -> dict[str, Any]:
     """The same by the reader of the library."""
-    container = read_file(data)
-    header, at = layout.read_header(data)
+    container = read_file(data, Strict())
+    header, at = layout.read_header(data, Strict())
     ends, chunks = [at - 4], []
     while at < len(data):
         chunk = layout.read_chunk(data, at)

@@ -1,4 +1,4 @@
-"""What a batch has to do: its tasks, and the sources that have all their outputs already."""
+"""Plan of a batch: its tasks, and the sources that have all their outputs already."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _check_targets(wanted: list[tuple[Path, list[Path]]]) -> None:
 
 
 def _is_current(target: Path, source: Path) -> bool:
-    """Whether a target is there and as new as its source."""
+    """Check of a target: true if it is there, and as new as its source."""
     try:
         return target.stat().st_mtime_ns >= source.stat().st_mtime_ns
     except OSError:

@@ -1,4 +1,4 @@
-"""Which files a batch works on: those that are named, those in folders, those of patterns."""
+"""Sources of a batch: files that are named, files in folders, files of patterns."""
 
 from __future__ import annotations
 

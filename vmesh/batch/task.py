@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import threading
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
@@ -47,7 +47,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a source.
+    """Outcome of a task: what became of its source.
 
     Parameters
     ----------
@@ -115,13 +115,13 @@ def _load(data: bytes, limits: Limits) -> Mesh:
 
 
 def _encode(data: bytes, settings: Settings, limits: Limits) -> Mesh:
-    from vmesh.encoder.pipeline import encode
+    from vmesh.encoder.pipeline import encode_with
     from vmesh.formats.raster.picture import read_picture
 
     if not data:
         raise ImageError("the file is empty")
     picture = read_picture(io.BytesIO(data), limits=limits)
-    mesh = encode(picture.array, metadata=picture.metadata, **asdict(settings))
+    mesh = encode_with(picture.array, settings, metadata=picture.metadata)
     limits.check_vertices(mesh.n_vertices)
     return mesh
 

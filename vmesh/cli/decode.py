@@ -10,7 +10,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import quiet_option
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
-from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, format_of, write_mesh
+from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, ExportOptions, format_of, write_mesh
 from vmesh.limits import MAX_SIDE
 
 
@@ -64,7 +64,12 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 def command(
     source: str,
     target: str,
+    scale: float | None,
+    width: int | None,
+    height: int | None,
     longest_side: int | None,
+    transform: tuple[float, ...] | None,
+    supersample: int,
     allow_partial: bool,
     quiet: bool,
     **options: Any,
@@ -76,18 +81,25 @@ def command(
     """
     limits = take_limits(options)
     check_suffix(target, RASTER_SUFFIXES)
-    size = options["width"] or options["height"]
-    if sum(value is not None for value in (options["scale"], size, longest_side)) > 1:
+    if sum(value is not None for value in (scale, width or height, longest_side)) > 1:
         raise click.UsageError("expected --scale, --longest-side or a size, not several of them")
-    if longest_side and options["transform"]:
+    if longest_side and transform:
         raise click.UsageError("expected no --transform with --longest-side")
     wanted = FORMATS[".png"] if target == STANDARD else format_of(target)
     with show_progress("decoding", 2, quiet=quiet) as report:
         report("reading")
         mesh = read_mesh(source, limits, allow_partial=allow_partial)
         if longest_side:
-            options["width" if mesh.width >= mesh.height else "height"] = longest_side
+            is_wide = mesh.width >= mesh.height
+            width, height = (longest_side, None) if is_wide else (None, longest_side)
         report("drawing")
+        chosen: ExportOptions = {
+            "scale": scale,
+            "width": width,
+            "height": height,
+            "transform": transform,
+            "supersample": supersample,
+        }
         write_output(
-            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
+            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **chosen)
         )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-from dataclasses import asdict
 from typing import Any
 
 import click
@@ -30,13 +29,13 @@ def command(source: str, target: str, as_json: bool, quiet: bool, **options: Any
     if as_json and target == STANDARD:
         raise click.UsageError("--json and the file cannot both go to standard output")
     from vmesh.codec.writer import dumps
-    from vmesh.encoder.pipeline import count_steps, encode
+    from vmesh.encoder.pipeline import count_steps, encode_with
 
     started = time.perf_counter()
     with show_progress("encoding", count_steps(settings) + 2, quiet=quiet) as report:
         report("reading")
         picture = read_photograph(source, limits)
-        mesh = encode(picture.array, metadata=picture.metadata, progress=report, **asdict(settings))
+        mesh = encode_with(picture.array, settings, metadata=picture.metadata, progress=report)
         limits.check_vertices(mesh.n_vertices)
         report("writing")
         data = dumps(mesh)

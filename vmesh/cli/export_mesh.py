@@ -10,7 +10,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import encoder_options, quiet_option, take_settings
 from vmesh.cli.streams import STANDARD, check_suffix
 from vmesh.cli.vector import convert
-from vmesh.formats.registry import MESH_SUFFIXES, format_of
+from vmesh.formats.registry import MESH_SUFFIXES, ExportOptions, format_of
 
 
 @click.command("export")
@@ -31,7 +31,7 @@ def command(source: str, target: str, ascii: bool, quiet: bool, **options: Any) 
     if target == STANDARD:
         raise click.UsageError("expected a name for OUTPUT: its ending says the format")
     check_suffix(target, MESH_SUFFIXES)
-    chosen: dict[str, Any] = {"ascii": True} if ascii else {}
+    chosen: ExportOptions = {"ascii": True} if ascii else {}
     if ascii and not target.lower().endswith(".ply"):
         raise click.UsageError("--ascii is for PLY")
     convert(source, target, format_of(target), settings, limits, quiet=quiet, **chosen)

@@ -33,7 +33,16 @@ from vmesh.limits import MAX_SIDE
 )
 @limit_options
 @quiet_option
-def command(source: str, target: str, color_step: int, quiet: bool, **options: Any) -> None:
+def command(
+    source: str,
+    target: str,
+    scale: float | None,
+    width: int | None,
+    height: int | None,
+    color_step: int,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Turn a mesh of another program, PLY, OBJ, glTF (.glb) or canonical text, into a .vmesh file.
 
     Its triangles have to be flat, with a colour at every vertex, and cover the box around them,
@@ -42,7 +51,7 @@ def command(source: str, target: str, color_step: int, quiet: bool, **options: A
     limits = take_limits(options)
     if not source.lower().endswith(MESH_SUFFIXES):
         raise click.UsageError(f"{source}: expected a name that ends in {', '.join(MESH_SUFFIXES)}")
-    if options["scale"] and (options["width"] or options["height"]):
+    if scale and (width or height):
         raise click.UsageError("expected --scale or a size, not both")
     check_suffix(target, (FILE_SUFFIX,))
     from vmesh.codec.writer import dumps
@@ -51,7 +60,9 @@ def command(source: str, target: str, color_step: int, quiet: bool, **options: A
     with show_progress("importing", 2, quiet=quiet) as report:
         report("reading")
         try:
-            mesh = import_mesh(source, step=color_step, limits=limits, **options)
+            mesh = import_mesh(
+                source, scale=scale, width=width, height=height, step=color_step, limits=limits
+            )
         except LimitError as error:
             raise LimitError(f"{source}: {error}") from None
         except ValueError as error:

@@ -50,12 +50,19 @@ def _region_of(text: str) -> Region:
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, show: str, quiet: bool, **options: Any) -> None:
+def command(
+    source: str,
+    target: str,
+    show: str,
+    zoom: str | None,
+    scale: float | None,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Draw the stages of the encoding of a photograph, and what stays sharp when it is enlarged.
 
     OUTPUT is an image, SVG or PDF, in which the mesh, its edges and points are drawn as such.
     """
-    zoom, scale = options.pop("zoom"), options.pop("scale")
     region = None if zoom is None else _region_of(zoom)
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, SHEET_SUFFIXES)

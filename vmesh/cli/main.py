@@ -11,22 +11,28 @@ import click
 from vmesh.cli.version import version_option
 from vmesh.errors import VmeshError, describe
 
-# Command -> the module of that name and the line in the overview; modules are imported when used.
+# Command -> its module and its line in the overview; modules are imported when used.
 COMMANDS: Final = {
-    "encode": ("encode", "Turn a photograph into a .vmesh file."),
-    "decode": ("decode", "Turn a .vmesh file into pixels at any scale."),
-    "to-svg": ("to_svg", "Turn a .vmesh file or a photograph into SVG."),
-    "to-pdf": ("to_pdf", "Turn a .vmesh file or a photograph into PDF."),
-    "to-html": ("to_html", "Turn a .vmesh file or a photograph into a page for browsers."),
-    "export": ("export_mesh", "Turn a .vmesh file or a photograph into a mesh for other programs."),
-    "import": ("import_mesh", "Turn a mesh of another program into a .vmesh file."),
-    "info": ("info", "Say what is in a .vmesh file."),
-    "validate": ("validate", "Say all that is wrong with a .vmesh file."),
-    "dump": ("dump", "Print the bytes of a .vmesh file with their meaning."),
-    "batch": ("batch", "Encode many photographs, and turn them into other formats."),
-    "inspect": ("inspect", "Draw the stages of an encoding."),
-    "report": ("report", "Compare photographs with their meshes, on one page."),
-    "compare": ("compare", "Measure how close two pictures or meshes are."),
+    "encode": ("vmesh.cli.encode", "Turn a photograph into a .vmesh file."),
+    "decode": ("vmesh.cli.decode", "Turn a .vmesh file into pixels at any scale."),
+    "to-svg": ("vmesh.cli.to_svg", "Turn a .vmesh file or a photograph into SVG."),
+    "to-pdf": ("vmesh.cli.to_pdf", "Turn a .vmesh file or a photograph into PDF."),
+    "to-html": (
+        "vmesh.cli.to_html",
+        "Turn a .vmesh file or a photograph into a page for browsers.",
+    ),
+    "export": (
+        "vmesh.cli.export_mesh",
+        "Turn a .vmesh file or a photograph into a mesh for other programs.",
+    ),
+    "import": ("vmesh.cli.import_mesh", "Turn a mesh of another program into a .vmesh file."),
+    "info": ("vmesh.cli.info", "Say what is in a .vmesh file."),
+    "validate": ("vmesh.cli.validate", "Say all that is wrong with a .vmesh file."),
+    "dump": ("vmesh.cli.dump", "Print the bytes of a .vmesh file with their meaning."),
+    "batch": ("vmesh.cli.batch", "Encode many photographs, and turn them into other formats."),
+    "inspect": ("vmesh.cli.inspect", "Draw the stages of an encoding."),
+    "report": ("vmesh.cli.report", "Compare photographs with their meshes, on one page."),
+    "compare": ("vmesh.cli.compare", "Measure how close two pictures or meshes are."),
 }
 
 
@@ -41,7 +47,7 @@ class LazyGroup(click.Group):
         """The command of a name."""
         if cmd_name not in COMMANDS:
             return None
-        command = import_module(f"vmesh.cli.{COMMANDS[cmd_name][0]}").command
+        command = import_module(COMMANDS[cmd_name][0]).command
         assert isinstance(command, click.Command)
         return command
 

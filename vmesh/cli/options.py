@@ -143,7 +143,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print figure
 
 
 def checked_by(check: Callable[[str], object]) -> Callback:
-    """What click calls with an option's text: a usage error if `check` raises a ValueError."""
+    """Callback for an option's text: a usage error if `check` raises a ValueError."""
 
     def callback(_: click.Context, __: click.Parameter, value: str | None) -> str | None:
         if value is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,17 +64,17 @@ def make_section(
 ) -> str:
     """The section of the page on one photograph."""
     from vmesh.report.page import section_of
-    from vmesh.report.study import study
+    from vmesh.report.study import study_with
 
     report("reading")
     picture = read_photograph(source, limits)
     name = "standard input" if source == STANDARD else Path(source).name
-    found = study(
+    found = study_with(
         picture.array,
+        settings,
         name=name,
         metadata=picture.metadata,
         limits=limits,
         progress=report,
-        **asdict(settings),
     )
     return section_of(found, number)

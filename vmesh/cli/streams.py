@@ -1,4 +1,4 @@
-"""Where commands read from and write to: files, standard input and standard output."""
+"""Inputs and outputs of commands: files, standard input and standard output."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def read_photograph(path: str, limits: Limits) -> Picture:
 
 
 def read_mesh_or_photograph(path: str, limits: Limits) -> Mesh | Picture:
-    """What a file holds, by its content; a name that ends in .vmesh promises a mesh."""
+    """Mesh or photograph in a file, by its content; a name that ends in .vmesh promises a mesh."""
     data = read_input(path)
     if is_vmesh(data) or Path(path).suffix.lower() == FILE_SUFFIX:
         return _mesh_of(data, path, limits)

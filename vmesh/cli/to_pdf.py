@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,6 +12,9 @@ from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
 from vmesh.formats.pdf.page_size import points_of
 from vmesh.formats.registry import FORMATS
+
+if TYPE_CHECKING:
+    from vmesh.formats.pdf.document import Backend, Mode
 
 
 @click.command("to-pdf")
@@ -43,9 +46,9 @@ from vmesh.formats.registry import FORMATS
 def command(
     source: str,
     target: str,
-    mode: str,
+    mode: Mode,
     page_width: str | None,
-    backend: str,
+    backend: Backend,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -55,5 +58,14 @@ def command(
     """
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".pdf",))
-    chosen: dict[str, Any] = {"mode": mode, "page_width": page_width, "backend": backend}
-    convert(source, target, FORMATS[".pdf"], settings, limits, quiet=quiet, **chosen)
+    convert(
+        source,
+        target,
+        FORMATS[".pdf"],
+        settings,
+        limits,
+        quiet=quiet,
+        mode=mode,
+        page_width=page_width,
+        backend=backend,
+    )

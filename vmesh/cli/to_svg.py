@@ -12,7 +12,7 @@ from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
 from vmesh.cli.vector import convert
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg.size import parse_length
-from vmesh.formats.svg.style import Style
+from vmesh.formats.svg.style import Mode, Seams, Style
 
 
 @click.command("to-svg")
@@ -66,7 +66,19 @@ from vmesh.formats.svg.style import Style
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, fit: str | None, quiet: bool, **options: Any) -> None:
+def command(
+    source: str,
+    target: str,
+    mode: Mode,
+    tolerance: float,
+    merge: float,
+    seams: Seams,
+    fit: str | None,
+    width: str | None,
+    height: str | None,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
 
     The options of the encoder apply to photographs.
@@ -74,11 +86,23 @@ def command(source: str, target: str, fit: str | None, quiet: bool, **options: A
     settings, limits = take_settings(options), take_limits(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
-    style = {name: options[name] for name in ("mode", "tolerance", "merge", "seams")}
     try:
-        n_stages = Style(**style).n_stages
+        n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-    if fit is not None:
-        options["fit"] = read_photograph(fit, limits).array
-    convert(source, target, wanted, settings, limits, quiet=quiet, n_stages=n_stages, **options)
+    convert(
+        source,
+        target,
+        wanted,
+        settings,
+        limits,
+        quiet=quiet,
+        n_stages=n_stages,
+        mode=mode,
+        tolerance=tolerance,
+        merge=merge,
+        seams=seams,
+        fit=None if fit is None else read_photograph(fit, limits).array,
+        width=width,
+        height=height,
+    )

@@ -1,14 +1,13 @@
-"""What ``vmesh to-svg``, ``to-pdf`` and ``to-html`` have in common."""
+"""Conversion to a vector format, common to ``vmesh to-svg``, ``to-pdf`` and ``to-html``."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import Any
+from typing import Unpack
 
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import read_mesh_or_photograph, write_output
 from vmesh.encoder.settings import Settings
-from vmesh.formats.registry import Format, write_mesh
+from vmesh.formats.registry import ExportOptions, Format, write_mesh
 from vmesh.limits import Limits
 
 
@@ -21,13 +20,14 @@ def convert(
     *,
     quiet: bool,
     n_stages: int = 0,
-    **options: Any,
+    **options: Unpack[ExportOptions],
 ) -> None:
     """Write a .vmesh file, or a photograph encoded on the way, in a vector format.
 
-    `n_stages` is how many the writer reports; 0 for one that reports none.
+    `n_stages` is how many the writer reports; 0 for one that reports none. Options are those of
+    the format.
     """
-    from vmesh.encoder.pipeline import count_steps, encode
+    from vmesh.encoder.pipeline import count_steps, encode_with
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(source, limits)
@@ -36,7 +36,7 @@ def convert(
         if isinstance(given, Mesh):
             mesh = given
         else:
-            mesh = encode(given.array, metadata=given.metadata, progress=report, **asdict(settings))
+            mesh = encode_with(given.array, settings, metadata=given.metadata, progress=report)
         report("writing")
         if n_stages:
             options["progress"] = report

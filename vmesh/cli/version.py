@@ -1,4 +1,4 @@
-"""What ``vmesh --version`` tells: the versions that a result may depend on."""
+"""Versions that a result may depend on, for ``vmesh --version``."""
 
 from __future__ import annotations
 

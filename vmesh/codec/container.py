@@ -19,16 +19,15 @@ from vmesh.codec.layout import (
     METADATA_TAGS,
     TILE_TAG,
     Chunk,
-    Complain,
     Header,
     check_room,
     read_chunk,
     read_header,
     read_varint,
-    refuse,
     truncated,
     verify_chunk,
 )
+from vmesh.codec.policy import Collecting, Partial, Policy, Strict
 from vmesh.errors import FormatError
 from vmesh.grid import Grid, Tile
 from vmesh.limits import MAX_TILE_SIDE
@@ -50,7 +49,7 @@ class Coded(NamedTuple):
 
 
 class Container(NamedTuple):
-    """What a file holds.
+    """Contents of a file, by its chunks.
 
     Attributes
     ----------
@@ -70,12 +69,12 @@ class Container(NamedTuple):
 
     @property
     def found(self) -> list[Coded]:
-        """What is coded and not lost."""
+        """Coded meshes that are not lost."""
         return [coded for coded in self.coded if coded is not None]
 
 
-def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse) -> Container:
-    """The header of a file, every field within its range, and all chunks.
+def read_file(data: bytes, policy: Policy) -> Container:
+    """Container in the bytes of a file: its header, every field within its range, and all chunks.
 
     Checksums are verified, the contents of the chunks are not looked at, but for the grid and the
     number of vertices with which each tile starts.
@@ -83,10 +82,9 @@ def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse)
     Parameters
     ----------
     data : bytes
-    complain : callable
-        Told of each error after which the file can still be read on. Without one it is raised.
-    lose : callable
-        Told of each error by which tiles are lost. Without one it is raised.
+    policy : Policy
+        Told of errors after which the file can still be read on, of tiles that are lost, and, once
+        all chunks are known, of those that no version up to this one knows.
 
     Raises
     ------
@@ -94,39 +92,39 @@ def read_file(data: bytes, complain: Complain = refuse, lose: Complain = refuse)
         With the code ``signature``, ``version``, ``truncated``, ``checksum``, ``header``,
         ``chunk``, ``trailing`` or ``tiles``.
     """
-    header, offset = read_header(data, complain)
-    *ancillary, first = _iterate_chunks(data, offset, complain)
+    header, offset = read_header(data, policy)
+    *ancillary, first = _iterate_chunks(data, offset, policy)
+    grid: Grid | None = None
+    coded: list[Coded | None] = [Coded(header, first)]
     if first.tag == MESH_TAG:
-        _check_end(data, first, complain)
+        _check_end(data, first, policy)
         check_room(header, first, "header")
-        return Container(header, ancillary, None, [Coded(header, first)])
-    grid = read_grid(first, header)
-    chunks = list(_iterate_tiles(data, first.end, grid, complain, lose))
-    tiles = zip(grid.tiles(), chunks, strict=False)
-    coded = [_open_tile(header, tile, chunk, lose) for tile, chunk in tiles]
+    else:
+        grid = read_grid(first, header)
+        chunks = list(_iterate_tiles(data, first.end, grid, policy))
+        tiles = zip(grid.tiles(), chunks, strict=False)
+        coded = [_open_tile(header, tile, chunk, policy) for tile, chunk in tiles]
+    for chunk in ancillary:
+        if not chunk.is_critical and chunk.tag not in CHUNK_NAMES:
+            policy.keep(chunk)
     return Container(header, ancillary, grid, coded)
 
 
 def read_ancillary(data: bytes) -> list[Chunk]:
-    """The chunks before the mesh of a file, of which this start is known.
+    """Chunks before the mesh of a file, of which this start is known.
 
     Raises
     ------
     FormatError
         As `read_file`; ``truncated`` if the start ends before the mesh begins.
     """
-
-    def pass_over(error: FormatError) -> None:
-        if error.code != "truncated":
-            raise error
-
-    _, offset = read_header(data)
-    *ancillary, _ = _iterate_chunks(data, offset, pass_over)
+    _, offset = read_header(data, Strict())
+    *ancillary, _ = _iterate_chunks(data, offset, Partial())
     return ancillary
 
 
 def read_grid(chunk: Chunk, header: Header) -> Grid:
-    """The grid that a chunk describes: the side of its tiles, in pixels."""
+    """Grid that a chunk describes: the side of its tiles, in pixels."""
     most = MAX_TILE_SIDE >> header.subdivision
     side, end = first_number(chunk)
     if end != chunk.length or not 1 <= side <= most:
@@ -139,7 +137,7 @@ def read_grid(chunk: Chunk, header: Header) -> Grid:
     return grid
 
 
-def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Chunk]:
+def _iterate_chunks(data: bytes, offset: int, policy: Policy) -> Iterator[Chunk]:
     """Chunks from an offset up to the mesh, or to the grid of one in tiles."""
     known: set[bytes] = set()
     tag = b""
@@ -147,54 +145,53 @@ def _iterate_chunks(data: bytes, offset: int, complain: Complain) -> Iterator[Ch
         chunk = read_chunk(data, offset)
         tag = chunk.tag
         if tag == MESH_TAG and len(data) < chunk.end:
-            complain(truncated(data, chunk.name))
+            policy.complain(truncated(data, chunk.name))
             yield chunk
             return
-        verify_chunk(data, chunk, complain)
+        verify_chunk(data, chunk, policy)
         if tag == TILE_TAG:
-            complain(FormatError("chunk", f"{chunk.name}, a tile, comes before a grid", offset))
+            policy.complain(
+                FormatError("chunk", f"{chunk.name}, a tile, comes before a grid", offset)
+            )
         elif chunk.is_critical and tag not in CHUNK_NAMES:
-            complain(FormatError("chunk", f"critical {chunk.name} is unknown", offset))
+            policy.complain(FormatError("chunk", f"critical {chunk.name} is unknown", offset))
         if tag in known:
-            complain(FormatError("chunk", f"{chunk.name} appears twice", offset))
+            policy.complain(FormatError("chunk", f"{chunk.name} appears twice", offset))
         if tag in METADATA_TAGS.values():
             known.add(tag)
         yield chunk
         offset = chunk.end
 
 
-def _iterate_tiles(
-    data: bytes, offset: int, grid: Grid, complain: Complain, lose: Complain
-) -> Iterator[Chunk | None]:
+def _iterate_tiles(data: bytes, offset: int, grid: Grid, policy: Policy) -> Iterator[Chunk | None]:
     """The chunks of the tiles, with which a file ends; None for one that is damaged."""
-    damages: list[FormatError] = []
     chunk = None
     for _ in range(grid.n_tiles):
+        damages = Collecting()
         try:
             chunk = read_chunk(data, offset)
-            verify_chunk(data, chunk, damages.append)
+            verify_chunk(data, chunk, damages)
         except FormatError as error:
-            lose(error)  # What follows cannot be told apart any more.
+            policy.lose(error)  # What follows cannot be told apart any more.
             return
         if chunk.tag != TILE_TAG:
-            damages.append(FormatError("chunk", f"expected a tile, got {chunk.name}", offset))
-        for damage in damages:
-            lose(damage)
-        yield None if damages else chunk
-        damages.clear()
+            damages.complain(FormatError("chunk", f"expected a tile, got {chunk.name}", offset))
+        for damage in damages.errors:
+            policy.lose(damage)
+        yield None if damages.errors else chunk
         offset = chunk.end
     if chunk:
-        _check_end(data, chunk, complain)
+        _check_end(data, chunk, policy)
 
 
-def _check_end(data: bytes, last: Chunk, complain: Complain) -> None:
+def _check_end(data: bytes, last: Chunk, policy: Policy) -> None:
     """Complain of what follows the last chunk."""
     if last.end < len(data):
         text = f"{len(data) - last.end} bytes follow the mesh"
-        complain(FormatError("trailing", text, last.end))
+        policy.complain(FormatError("trailing", text, last.end))
 
 
-def _open_tile(header: Header, tile: Tile, chunk: Chunk | None, lose: Complain) -> Coded | None:
+def _open_tile(header: Header, tile: Tile, chunk: Chunk | None, policy: Policy) -> Coded | None:
     """A tile and what it says of itself, None if that cannot be."""
     if chunk is None:
         return None
@@ -213,13 +210,13 @@ def _open_tile(header: Header, tile: Tile, chunk: Chunk | None, lose: Complain) 
         )
         check_room(own, coded, "tiles")
     except FormatError as error:
-        lose(error)
+        policy.lose(error)
         return None
     return Coded(own, coded)
 
 
 def first_number(chunk: Chunk) -> tuple[int, int]:
-    """The number that the content of a chunk starts with, and its length."""
+    """Number that the content of a chunk starts with, and its length."""
     try:
         return read_varint(chunk.content, 0, "tiles")
     except FormatError:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from vmesh.codec import layout
 from vmesh.codec.container import first_number, read_grid
 from vmesh.codec.layout import Chunk
+from vmesh.codec.policy import Collecting, Strict
 from vmesh.errors import FormatError
 from vmesh.limits import PLAIN_DEPTH
 
@@ -39,7 +40,7 @@ def annotate(data: bytes) -> Iterator[Field]:
 def _sizes(data: bytes) -> Iterator[tuple[int, str]]:
     """Size and meaning of each field."""
     yield from _header_sizes(data)
-    header, at = layout.read_header(data, _ignore)
+    header, at = layout.read_header(data, Collecting())
     n_left = 1  # tiles, or the mesh
     while n_left:
         chunk = layout.read_chunk(data, at)
@@ -71,7 +72,7 @@ def _content_sizes(chunk: Chunk) -> Iterator[tuple[int, str]]:
 def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:
     """Size and meaning of each field of signature and header."""
     if not layout.is_vmesh(data):
-        layout.read_header(data)  # It says what is wrong.
+        layout.read_header(data, Strict())  # It says what is wrong.
     at = len(layout.SIGNATURE)
     yield at, "signature"
     (version,) = layout.take(data, at, 1, "the header")
@@ -101,7 +102,3 @@ def _checksum(data: bytes, start: int, end: int) -> str:
     stored = int.from_bytes(layout.take(data, end, 4, "a checksum"), "little")
     computed = zlib.crc32(data[start:end])
     return "CRC-32" if stored == computed else f"CRC-32, WRONG: it should be {computed:08x}"
-
-
-def _ignore(_: FormatError) -> None:
-    """Read on."""

@@ -21,10 +21,11 @@ from __future__ import annotations
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from vmesh.codec.policy import Policy
 from vmesh.errors import FormatError
 from vmesh.limits import (
     MAX_DEPTH,
@@ -71,10 +72,6 @@ _MAX_VARINT: Final = (1 << 31) - 1
 _LEVELS_PER_BYTE: Final = 5_700
 
 
-Complain = Callable[[FormatError], None]
-"""Told of an error after which the file can still be read on; raises it, or does not."""
-
-
 @dataclass(frozen=True, slots=True)
 class Chunk:
     """One chunk: its tag, its content, and where it and its content start in the file.
@@ -90,7 +87,7 @@ class Chunk:
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """Name in messages."""
         return f"chunk {self.tag.decode()}"
 
     @property
@@ -105,18 +102,18 @@ class Chunk:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all of the content is there."""
+        """Completeness: true if all of the content is there."""
         return len(self.content) == self.length
 
     @property
     def is_critical(self) -> bool:
-        """Whether a reader has to know this chunk."""
+        """Criticality: true if a reader has to know this chunk."""
         return self.tag.isupper()
 
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What a file says about its mesh before it: canvas, lattice, counts and colour steps."""
+    """Header of a file: canvas, lattice, counts and colour steps of its mesh."""
 
     width: int
     height: int
@@ -190,17 +187,12 @@ def check_ancillary(tag: bytes) -> None:
 
 
 def is_vmesh(start: bytes) -> bool:
-    """Whether a file that starts with these bytes calls itself a .vmesh file."""
+    """Check of a file's first bytes: true if they are those of a .vmesh file."""
     return start[: len(SIGNATURE)] == SIGNATURE
 
 
-def refuse(error: FormatError) -> None:
-    """Raise the error: read no further."""
-    raise error
-
-
-def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
-    """The header, and the offset of what follows it; parameters and errors of `read_file`."""
+def read_header(data: bytes, policy: Policy) -> tuple[Header, int]:
+    """Header, and the offset of what follows it; parameters and errors are as of `read_file`."""
     if not is_vmesh(data):
         if SIGNATURE.startswith(data):
             raise FormatError("truncated", "the file ends within its signature", len(data))
@@ -217,14 +209,14 @@ def read_header(data: bytes, complain: Complain = refuse) -> tuple[Header, int]:
     for _ in range(3 + (components & 3) + 1):
         number, end = read_varint(data, end, "header")
         numbers.append(number)
-    _verify(data, 0, end, "the header", complain)
+    _verify(data, 0, end, "the header", policy)
     width, height, n_vertices, *steps = numbers
     depth = PLAIN_DEPTH + (components >> 2)
     header = Header(width, height, form >> 2 & 15, form >> 6, n_vertices, tuple(steps), depth)
     is_deep = form & 3 == _DEEP
     errors = [FormatError("header", text, start) for text in _header_complaints(header, is_deep)]
     for error in errors:
-        complain(error)
+        policy.complain(error)
     if errors:
         raise errors.pop()
     return header, end + _CHECKSUM.size
@@ -258,7 +250,7 @@ def version_name(byte: int) -> str:
 
 
 def _header_complaints(header: Header, is_deep: bool) -> Iterator[str]:
-    """What is wrong with a header, in words; it has a byte for the depth if it is deep."""
+    """Faults of a header, in words; it has a byte for the depth if it is deep."""
     if not (1 <= header.width <= MAX_SIDE and 1 <= header.height <= MAX_SIDE):
         yield (
             f"expected a canvas of 1 to {MAX_SIDE} pixels a side, "
@@ -290,10 +282,10 @@ def read_chunk(data: bytes, offset: int) -> Chunk:
     return Chunk(tag, length, data[start : start + length], offset, start)
 
 
-def verify_chunk(data: bytes, chunk: Chunk, complain: Complain) -> None:
+def verify_chunk(data: bytes, chunk: Chunk, policy: Policy) -> None:
     """Refuse a chunk that the file does not hold all of, and compare its checksum."""
     take(data, chunk.content_offset, chunk.length, chunk.name)
-    _verify(data, chunk.offset, chunk.content_end, chunk.name, complain)
+    _verify(data, chunk.offset, chunk.content_end, chunk.name, policy)
 
 
 def check_room(header: Header, chunk: Chunk, code: str) -> None:
@@ -330,8 +322,8 @@ def read_varint(data: bytes, offset: int, code: str) -> tuple[int, int]:
     raise FormatError(code, f"expected a number of 0 to {_MAX_VARINT} in its shortest form", offset)
 
 
-def _verify(data: bytes, start: int, end: int, name: str, complain: Complain) -> None:
+def _verify(data: bytes, start: int, end: int, name: str, policy: Policy) -> None:
     """Compare the checksum that follows some bytes."""
     (stored,) = _CHECKSUM.unpack(take(data, end, _CHECKSUM.size, name))
     if stored != zlib.crc32(data[start:end]):
-        complain(FormatError("checksum", f"{name} is damaged", start))
+        policy.complain(FormatError("checksum", f"{name} is damaged", start))

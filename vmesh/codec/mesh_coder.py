@@ -22,7 +22,8 @@ from vmesh.kernels.coding.range_coder import OK, even_model
 from vmesh.kernels.coding.triangle_list import NUMBER_CONTEXTS, code_triangles
 from vmesh.kernels.delaunay import delaunay, flip_to_delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
-from vmesh.mesh import Mesh, raster_keys
+from vmesh.mesh import Mesh
+from vmesh.mesh.canonical_order import raster_keys
 
 # Zero bytes that a writer may cut off the end: as many as the coder holds in advance. So what a
 # stream can hold is bounded by its length.

@@ -6,12 +6,13 @@ import zlib
 
 from vmesh.codec import layout
 from vmesh.codec.layout import Chunk
+from vmesh.codec.policy import Policy
 from vmesh.errors import FormatError
 from vmesh.limits import Limits
 from vmesh.mesh import Metadata
 
 
-def read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain) -> Metadata:
+def read_metadata(chunks: list[Chunk], limits: Limits, policy: Policy) -> Metadata:
     """ICC profile, EXIF, XMP and the ancillary chunks that are not known.
 
     Parameters
@@ -20,8 +21,8 @@ def read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain
         All but the mesh.
     limits : Limits
         How far the chunks may inflate.
-    complain : callable
-        Told of chunks that are damaged, as that of `container.read_file`.
+    policy : Policy
+        Told of chunks that are damaged.
 
     Raises
     ------
@@ -37,7 +38,7 @@ def read_metadata(chunks: list[Chunk], limits: Limits, complain: layout.Complain
             try:
                 known[names[chunk.tag]] = block = _inflate(chunk, limits)
             except FormatError as error:
-                complain(error)
+                policy.complain(error)
                 continue
             total += len(block)
         else:

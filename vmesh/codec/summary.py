@@ -1,4 +1,4 @@
-"""What is in a ``.vmesh`` file: the figures of its header, and the bytes of each part."""
+"""Figures of a ``.vmesh`` file: those of its header, and the bytes of each part."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 from vmesh.codec import layout
 from vmesh.codec.container import read_file
+from vmesh.codec.policy import Strict
 from vmesh.limits import Limits
 
 
@@ -15,7 +16,7 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     The bytes of all parts add up to the file. What belongs to no chunk's content, such as header,
     tags and checksums, is the frame.
     """
-    container = read_file(data)
+    container = read_file(data, Strict())
     header = container.header
     figures: dict[str, Any] = {
         "version": layout.version_name(data[len(layout.SIGNATURE)]),
@@ -43,11 +44,11 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
     ]
     coded = [("mesh", sum(len(chunk.content) for _, chunk in container.found))]
     if by_parts:
-        from vmesh.codec.reader import measure
+        from vmesh.codec.reader import read
 
-        mesh, sizes = measure(data, limits=limits)
-        figures["triangles"] = mesh.n_triangles
-        coded = list(sizes.items())
+        reading = read(data, limits=limits)
+        figures["triangles"] = reading.mesh.n_triangles
+        coded = list(reading.sizes.items())
     parts = [*ancillary, *coded]
     parts.insert(0, ("frame", len(data) - sum(size for _, size in parts)))
     figures["parts"] = [

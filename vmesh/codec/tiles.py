@@ -16,7 +16,8 @@ from vmesh.color_lattice import ColorLattice
 from vmesh.errors import FormatError
 from vmesh.grid import Grid, Tile
 from vmesh.kernels.delaunay import delaunay
-from vmesh.mesh import Mesh, raster_keys, sorted_triangles
+from vmesh.mesh import Mesh
+from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 
 
 def cut(mesh: Mesh, grid: Grid) -> list[Mesh]:
@@ -96,7 +97,7 @@ def _check_fit(container: Container, what: str, tiles: Int64Array) -> None:
 
 
 def _n_tiles_at(vertices: Int32Array, side: int, there: BoolArray) -> Int64Array:
-    """How many tiles each vertex is in or on the border of, (n,), of those that are there.
+    """Numbers of tiles, of those that are there, that each vertex is in or on the border of; (n,).
 
     `there` has the shape (rows, columns) of the grid, `side` is in lattice units.
     """

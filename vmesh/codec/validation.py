@@ -1,19 +1,19 @@
-"""Everything that is wrong with a .vmesh file, where reading it stops at the first."""
+"""Findings in a .vmesh file: all that is wrong with it, where reading it stops at the first."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
 
-from vmesh.codec.container import read_file
-from vmesh.codec.layout import CHUNK_NAMES
-from vmesh.codec.reader import decode
+from vmesh.codec.layout import Chunk
+from vmesh.codec.policy import Collecting
+from vmesh.codec.reader import read
 from vmesh.errors import FormatError, LimitError
 from vmesh.limits import DEFAULT_LIMITS, Limits
 
 
 class Severity(StrEnum):
-    """How bad a finding is."""
+    """Severity of a finding."""
 
     ERROR = "error"
     """A rule of the format is broken, or could not be checked."""
@@ -23,7 +23,7 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something that was found in a file.
+    """Finding in a file: a rule that it breaks, or what a user may want to know.
 
     Parameters
     ----------
@@ -58,23 +58,21 @@ def validate(
     limits : Limits
         What the file may ask for.
     """
-    found: dict[Finding, None] = {}  # In order, each once.
-
-    def complain(error: FormatError | LimitError) -> None:
-        """Note an error."""
-        if isinstance(error, FormatError):
-            finding = Finding(Severity.ERROR, error.code, error.message, error.offset)
-        else:
-            finding = Finding(Severity.ERROR, "limit", str(error), None)
-        found[finding] = None
-
+    policy = Collecting()
+    last: list[FormatError | LimitError] = []
     try:
-        container = read_file(bytes(memoryview(data)), complain, complain)
-        for chunk in container.ancillary:
-            if not chunk.is_critical and chunk.tag not in CHUNK_NAMES:
-                text = f"ancillary chunk {chunk.tag.decode()} is unknown, and kept as it is"
-                found[Finding(Severity.NOTE, "unknown", text, chunk.offset)] = None
-        decode(container, limits, complain, complain)
+        read(data, policy, limits=limits)
     except (FormatError, LimitError) as error:
-        complain(error)
-    return list(found)
+        last.append(error)
+    # In order, each once.
+    return list(dict.fromkeys(map(_finding_of, [*policy.found, *last])))
+
+
+def _finding_of(found: FormatError | LimitError | Chunk) -> Finding:
+    """Finding that tells of an error, or of a chunk that is unknown."""
+    if isinstance(found, FormatError):
+        return Finding(Severity.ERROR, found.code, found.message, found.offset)
+    if isinstance(found, LimitError):
+        return Finding(Severity.ERROR, "limit", str(found), None)
+    text = f"ancillary {found.name} is unknown, and kept as it is"
+    return Finding(Severity.NOTE, "unknown", text, found.offset)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,14 @@ from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import meet_psnr, meet_size, refined_vertices
 from vmesh.encoder.remeshing import Remesher
-from vmesh.encoder.settings import Settings
+from vmesh.encoder.settings import (
+    DEFAULT_EFFORT,
+    ColorMode,
+    Diffusion,
+    Method,
+    Sampler,
+    Settings,
+)
 from vmesh.encoder.starting_mesh import sampled_draft, sampled_tiles, thinned, thinned_tiles
 from vmesh.encoder.threads import Run, workers
 from vmesh.encoder.tiles.tiled_draft import REPORTS, TiledRemesher
@@ -37,23 +44,75 @@ _BLUE_NOISE_STEP: Final = 8
 def encode(
     array: npt.ArrayLike,
     *,
+    method: Method = "adaptive",
+    quality: int | None = None,
+    target_size: int | None = None,
+    target_psnr: float | None = None,
+    vertices: int | None = None,
+    density: float | None = None,
+    effort: int = DEFAULT_EFFORT,
+    gamma: float = 1.0,
+    sampler: Sampler = "multiclass",
+    diffusion: Diffusion = "zhou-fang",
+    colors: ColorMode = "fitted",
+    color_step: int | None = None,
+    tile: int | None = None,
+    seed: int = 0,
+    threads: int | None = None,
     metadata: Metadata | None = None,
     progress: Progress | None = None,
-    **settings: Any,
 ) -> Mesh:
     """Mesh of a picture.
+
+    Of `quality`, `target_size`, `target_psnr`, `vertices` and `density` one at most is given.
+    Without any, the quality is 75 ("adaptive"), or gamma decides ("blue-noise").
 
     Parameters
     ----------
     array : array_like
         Shape (h, w), (h, w, 3) or (h, w, 4), uint8 or uint16: grey, RGB or RGBA, alpha not
         multiplied. The mesh has samples of as many bits.
+    method : {"adaptive", "blue-noise"}
+        How vertices are found: sampled densely, thinned to those that matter most and moved to
+        where they serve best; or sampled from the salience and left there.
+    quality : int, optional
+        0 to 100: the error that a bit has to save, the same for every picture ("adaptive").
+    target_size : int, optional
+        Bytes of the file, met from below within 2 % ("adaptive").
+    target_psnr : float, optional
+        Decibels over all samples, met from above within 0.1 dB ("adaptive").
+    vertices : int, optional
+        Vertices wanted, met exactly, or within 2 % ("blue-noise", and effort 1).
+    density : float, optional
+        Vertices wanted per pixel, above 0 and up to 1.
+    effort : int
+        1 to 9, 5 unless given: time for a better mesh of the same size ("adaptive"). 1 leaves the
+        vertices where they were sampled.
+    gamma : float
+        Exponent of the salience, above 0; a smaller value gives more points.
+    sampler : {"multiclass", "channels"}
+        Colour planes sampled together, no two on one pixel, or each for itself.
+    diffusion : {"zhou-fang", "ostromoukhov"}
+        Coefficients of the error diffusion.
+    colors : {"fitted", "sampled"}
+        Vertex colours by least squares over all pixels, or those of the vertices' pixels
+        ("blue-noise").
+    color_step : int, optional
+        Step of the luma lattice in sample units, 1 (no rounding) to the largest sample; the other
+        components' steps follow from it. It follows from the error unless given.
+    tile : int, optional
+        Side in pixels, 32 to 2048, of tiles that the mesh is made of: each is worked on, and held
+        in the file, as a picture of its own ("adaptive"). Its corners are vertices always. A
+        picture that fits one tile has none.
+    seed : int
+        Start of the random thresholds.
+    threads : int, optional
+        Most threads at once, of which the mesh does not depend; as many as there are processors
+        unless given.
     metadata : Metadata, optional
-        What travels with the picture.
+        Metadata that travel with the picture.
     progress : callable, optional
         Called with the name of each of `STAGES` as it begins, and again as it goes on.
-    **settings
-        Fields of :class:`vmesh.Settings`.
 
     Returns
     -------
@@ -65,7 +124,34 @@ def encode(
     ValueError, TypeError
         If the array or a setting is not as described, or if a target cannot be met.
     """
-    chosen = Settings(**settings)
+    settings = Settings(
+        method=method,
+        quality=quality,
+        target_size=target_size,
+        target_psnr=target_psnr,
+        vertices=vertices,
+        density=density,
+        effort=effort,
+        gamma=gamma,
+        sampler=sampler,
+        diffusion=diffusion,
+        colors=colors,
+        color_step=color_step,
+        tile=tile,
+        seed=seed,
+        threads=threads,
+    )
+    return encode_with(array, settings, metadata=metadata, progress=progress)
+
+
+def encode_with(
+    array: npt.ArrayLike,
+    chosen: Settings,
+    *,
+    metadata: Metadata | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
+    """Mesh of a picture by settings that are made already; the rest is as for :func:`encode`."""
     report = progress or silent
     image = with_hidden_colors_replaced(as_image(array))
     if chosen.method == "blue-noise":

@@ -29,7 +29,7 @@ from vmesh.kernels.remeshing import (
     thin,
     weigh,
 )
-from vmesh.mesh import raster_keys
+from vmesh.mesh.canonical_order import raster_keys
 
 # Colours are fitted anew whenever this share of the vertices is left.
 _REFIT_SHARE: Final = 0.6

@@ -15,7 +15,7 @@ from vmesh.arrays import BoolArray, Int32Array, Int64Array, UInt8Array, UInt16Ar
 from vmesh.encoder.salience import ONE
 from vmesh.encoder.settings import Diffusion, Sampler
 from vmesh.kernels.diffusion import diffuse
-from vmesh.mesh import raster_keys
+from vmesh.mesh.canonical_order import raster_keys
 
 COUNT_TOLERANCE: Final = 0.01
 """Relative error at which the search for a number of points stops; 0.02 is what is promised."""

@@ -1,10 +1,10 @@
-"""What a caller can choose about an encoding."""
+"""Settings of an encoding, which a caller chooses."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from operator import index
-from typing import Any, Final, Literal, get_args
+from typing import Final, Literal, get_args
 
 from vmesh.limits import MAX_DEPTH, MAX_TILE_SIDE
 
@@ -32,50 +32,12 @@ GOALS: Final = ("quality", "target_size", "target_psnr", "vertices", "density")
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Settings of an encoding.
+    """Settings of an encoding: the keywords of :func:`vmesh.encode`, with the same defaults.
 
-    Of `quality`, `target_size`, `target_psnr`, `vertices` and `density` one at most is given.
-    Without any, the quality is 75 ("adaptive"), or gamma decides ("blue-noise").
-
-    Parameters
-    ----------
-    method : {"adaptive", "blue-noise"}
-        How vertices are found: sampled densely, thinned to those that matter most and moved to
-        where they serve best; or sampled from the salience and left there.
-    quality : int, optional
-        0 to 100: the error that a bit has to save, the same for every picture ("adaptive").
-    target_size : int, optional
-        Bytes of the file, met from below within 2 % ("adaptive").
-    target_psnr : float, optional
-        Decibels over all samples, met from above within 0.1 dB ("adaptive").
-    vertices : int, optional
-        Vertices wanted, met exactly, or within 2 % ("blue-noise", and effort 1).
-    density : float, optional
-        Vertices wanted per pixel, above 0 and up to 1.
-    effort : int
-        1 to 9: time for a better mesh of the same size ("adaptive"). 1 leaves the vertices where
-        they were sampled.
-    gamma : float
-        Exponent of the salience, above 0; a smaller value gives more points.
-    sampler : {"multiclass", "channels"}
-        Colour planes sampled together, no two on one pixel, or each for itself.
-    diffusion : {"zhou-fang", "ostromoukhov"}
-        Coefficients of the error diffusion.
-    colors : {"fitted", "sampled"}
-        Vertex colours by least squares over all pixels, or those of the vertices' pixels
-        ("blue-noise").
-    color_step : int, optional
-        Step of the luma lattice in sample units, 1 (no rounding) to the largest sample; the other
-        components' steps follow from it. It follows from the error unless given.
-    tile : int, optional
-        Side in pixels, 32 to 2048, of tiles that the mesh is made of: each is worked on, and held
-        in the file, as a picture of its own ("adaptive"). Its corners are vertices always. A
-        picture that fits one tile has none.
-    seed : int
-        Start of the random thresholds.
-    threads : int, optional
-        Most threads at once, of which the mesh does not depend; as many as there are processors
-        unless given.
+    Raises
+    ------
+    ValueError, TypeError
+        If one is out of its range, or two of them do not go together.
     """
 
     method: Method = "adaptive"
@@ -163,7 +125,21 @@ class Settings:
             return max(4, round(self.density * width * height))
         return self.vertices
 
-    def with_goal(self, **goal: float) -> Settings:
-        """The settings with another goal, or none."""
-        changes: dict[str, Any] = {**dict.fromkeys(GOALS), **goal}
-        return replace(self, **changes)
+    def with_goal(
+        self,
+        *,
+        quality: int | None = None,
+        target_size: int | None = None,
+        target_psnr: float | None = None,
+        vertices: int | None = None,
+        density: float | None = None,
+    ) -> Settings:
+        """Settings with another goal, or none."""
+        return replace(
+            self,
+            quality=quality,
+            target_size=target_size,
+            target_psnr=target_psnr,
+            vertices=vertices,
+            density=density,
+        )

@@ -1,4 +1,4 @@
-"""What a notebook shows of a mesh that is the value of a cell."""
+"""Previews of a mesh that is the value of a cell, for notebooks."""
 
 from __future__ import annotations
 

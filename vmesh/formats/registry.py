@@ -3,57 +3,95 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import TYPE_CHECKING, Any, BinaryIO, Final, TypedDict, Unpack
 
 from vmesh.files import atomic_output
+from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
+
+if TYPE_CHECKING:
+    from vmesh.arrays import SampleArray
+    from vmesh.formats.pdf.document import Backend
+    from vmesh.formats.svg.size import Length
+    from vmesh.formats.svg.style import Mode, Seams
+    from vmesh.mesh.placement import Matrix
+    from vmesh.progress import Progress
 
 Writer = Callable[..., None]
 
 
+class ExportOptions(TypedDict, total=False):
+    """Options of all formats that are written; each takes some of them, as :func:`export` says."""
+
+    scale: float | None
+    width: Length | None
+    height: Length | None
+    transform: Matrix | None
+    supersample: int
+    mode: Mode
+    tolerance: float
+    merge: float
+    seams: Seams
+    fit: SampleArray | None
+    page_width: str | None
+    backend: Backend
+    ascii: bool
+    progress: Progress | None
+
+
 @dataclass(frozen=True, slots=True)
 class Format:
-    """An output format: its writer, and its name where it is made of pixels."""
+    """An output format.
 
+    Parameters
+    ----------
+    name : str
+        Its name, for pixels that by which Pillow knows it.
+    module, function : str
+        Where its writer is.
+    is_raster : bool
+        True of a format that holds pixels, which its writer takes in place of the mesh.
+    is_compressed : bool
+        True if what is written is compressed as a whole, by gzip.
+    """
+
+    name: str
     module: str
     function: str
-    raster_name: str = ""
-
-    @property
-    def is_raster(self) -> bool:
-        """Whether files of this format hold pixels."""
-        return bool(self.raster_name)
+    is_raster: bool = False
+    is_compressed: bool = False
 
     def writer(self) -> Writer:
-        """The function that writes it."""
+        """Writer of the format, imported when it is asked for."""
         found: Writer = getattr(import_module(self.module), self.function)
         return found
 
 
 FORMATS: Final = {
-    ".png": Format("vmesh.formats.raster.rendering", "write_raster", "PNG"),
-    ".jpg": Format("vmesh.formats.raster.rendering", "write_raster", "JPEG"),
-    ".jpeg": Format("vmesh.formats.raster.rendering", "write_raster", "JPEG"),
-    ".webp": Format("vmesh.formats.raster.rendering", "write_raster", "WEBP"),
-    ".tif": Format("vmesh.formats.raster.rendering", "write_raster", "TIFF"),
-    ".tiff": Format("vmesh.formats.raster.rendering", "write_raster", "TIFF"),
-    ".pam": Format("vmesh.formats.raster.pam", "write_pam", "PAM"),
-    ".svg": Format("vmesh.formats.svg.document", "write_svg"),
-    ".svgz": Format("vmesh.formats.svg.document", "write_svgz"),
-    ".pdf": Format("vmesh.formats.pdf.document", "write_pdf"),
-    ".html": Format("vmesh.formats.html.document", "write_html"),
-    ".htm": Format("vmesh.formats.html.document", "write_html"),
-    ".ply": Format("vmesh.formats.models.mesh_files", "write_ply"),
-    ".obj": Format("vmesh.formats.models.mesh_files", "write_obj"),
-    ".glb": Format("vmesh.formats.models.mesh_files", "write_glb"),
-    ".txt": Format("vmesh.codec.text", "write_text"),
+    ".png": Format("PNG", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".jpg": Format("JPEG", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".jpeg": Format("JPEG", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".webp": Format("WEBP", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".tif": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".tiff": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
+    ".pam": Format("PAM", "vmesh.formats.raster.pam", "write_pam", is_raster=True),
+    ".svg": Format("SVG", "vmesh.formats.svg.document", "write_svg"),
+    ".svgz": Format("SVG", "vmesh.formats.svg.document", "write_svg", is_compressed=True),
+    ".pdf": Format("PDF", "vmesh.formats.pdf.document", "write_pdf"),
+    ".html": Format("HTML", "vmesh.formats.html.document", "write_html"),
+    ".htm": Format("HTML", "vmesh.formats.html.document", "write_html"),
+    ".ply": Format("PLY", "vmesh.formats.models.mesh_files", "write_ply"),
+    ".obj": Format("OBJ", "vmesh.formats.models.mesh_files", "write_obj"),
+    ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb"),
+    ".txt": Format("text", "vmesh.codec.text", "write_text"),
 }
 
-# Those that hold a mesh as other programs know it, and are read too.
+# Formats that hold a mesh as other programs know it, which are read too.
 MESH_SUFFIXES: Final = (".ply", ".obj", ".glb", ".txt")
 RASTER_SUFFIXES: Final = tuple(suffix for suffix, f in FORMATS.items() if f.is_raster)
 
@@ -74,18 +112,53 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     return FORMATS[suffix]
 
 
-def write_mesh(mesh: Mesh, stream: BinaryIO, target: Format, **options: Any) -> None:
-    """Write a mesh into an open file; options are those of `render` or of the format's writer."""
-    if not target.is_raster:
-        target.writer()(mesh, stream, **options)
+def write_mesh(
+    mesh: Mesh,
+    stream: BinaryIO,
+    target: Format,
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    **options: Unpack[ExportOptions],
+) -> None:
+    """Write a mesh into an open file; options and errors are those of :func:`export`."""
+    write, asked = target.writer(), dict[str, Any](options)
+    if target.is_raster:
+        from vmesh.formats.raster.rendering import render
+
+        _check_options(target.name, render, asked)
+        raster = render(mesh, limits=limits, **asked)
+        write(raster, stream, target.name, metadata=mesh.metadata, depth=mesh.depth)
         return
-    from vmesh.formats.raster.rendering import render
+    _check_options(target.name, write, asked)
+    if target.is_compressed:
+        from vmesh.formats.svg.document import gzipped
 
-    raster = render(mesh, **options)
-    target.writer()(raster, stream, target.raster_name, metadata=mesh.metadata, depth=mesh.depth)
+        with gzipped(stream) as compressed:
+            write(mesh, compressed, limits=limits, **asked)
+    else:
+        write(mesh, stream, limits=limits, **asked)
 
 
-def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
+def _check_options(name: str, function: Callable[..., object], options: Iterable[str]) -> None:
+    """Refuse options that are no keywords of a function, which makes or writes a format."""
+    keywords = [
+        parameter.name
+        for parameter in signature(function).parameters.values()
+        if parameter.kind is Parameter.KEYWORD_ONLY and parameter.name != "limits"
+    ]
+    for option in options:
+        if option not in keywords:
+            known = f"one of {', '.join(keywords)}" if keywords else "none"
+            raise TypeError(f"{name} has no option {option!r}: expected {known}")
+
+
+def export(
+    mesh: Mesh,
+    path: str | os.PathLike[str],
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    **options: Unpack[ExportOptions],
+) -> None:
     """Write a mesh as pixels, drawing, page or other programs' mesh, by the ending of the name.
 
     PNG, JPEG, WebP, TIFF and PAM; SVG, PDF and HTML; PLY, OBJ, glTF (``.glb``) and the canonical
@@ -97,13 +170,42 @@ def export(mesh: Mesh, path: str | os.PathLike[str], **options: Any) -> None:
     mesh : Mesh
     path : path
         Replaced only when the new file is complete.
-    **options
-        For images those of :func:`vmesh.render`; for SVG ``mode``, "gradient", "exact", "auto"
-        with a ``tolerance`` in levels, or "flat", ``merge``, ``seams``, "crisp" or "trapping",
-        ``fit``, the photograph as an array, and ``width`` or ``height``, such as "210mm" or "100%";
-        for PDF ``page_width``, such as "210mm", and ``backend``, "native" or "cairo"; for PLY
-        ``ascii``, true for text.
+    limits : Limits
+        Limits on the mesh, and on the pixels that are made of it.
+    scale, transform, supersample
+        For images: as for :func:`vmesh.render`.
+    width, height : int or str
+        For images the size in pixels, as for :func:`vmesh.render`. For SVG that at which it shows,
+        such as "210mm" or "100%"; a number counts pixels.
+    mode : {"gradient", "exact", "auto", "flat"}
+        For SVG what fills a triangle; for PDF "exact".
+    tolerance : float
+        For SVG in mode "auto": largest error of a channel in levels, 4 unless given.
+    merge : float
+        For SVG in mode "gradient": squared error below which neighbours share one gradient, 0
+        unless given.
+    seams : {"crisp", "trapping"}
+        For SVG how no seams show.
+    fit : ndarray
+        For SVG the photograph whose pixels the gradients are fitted to.
+    page_width : str
+        For PDF, such as "210mm".
+    backend : {"native", "cairo"}
+        For PDF what writes it.
+    ascii : bool
+        For PLY true to get text.
+    progress : callable
+        For SVG, called with the name of each stage as it begins.
+
+    Raises
+    ------
+    TypeError
+        If the format has no such option.
+    ValueError
+        If the ending is not one of these, or an option is none that the format knows.
+    LimitError
+        If the mesh or its pixels are more than `limits` allow.
     """
     target = format_of(path)
     with atomic_output(path) as stream:
-        write_mesh(mesh, stream, target, **options)
+        write_mesh(mesh, stream, target, limits=limits, **options)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.image import as_image
-from vmesh.encoder.pipeline import encode
+from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
 from vmesh.formats.raster.picture import flatten
@@ -89,7 +89,7 @@ def inspect_encoding(
         On the mesh and on what is drawn of it.
     """
     salience, samples = propose(as_image(photograph), settings)
-    mesh = encode(photograph, metadata=metadata, progress=progress, **asdict(settings))
+    mesh = encode_with(photograph, settings, metadata=metadata, progress=progress)
     limits.check_vertices(mesh.n_vertices)
     classes = samples.classes if settings.method == "blue-noise" else None
     return Inspection(photograph, salience, classes, mesh, limits)

@@ -1,13 +1,12 @@
-"""How good meshes of a photograph are by the size of their files."""
+"""Rate-distortion curve of the meshes of a photograph."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Final
 
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.codec.writer import dumps
-from vmesh.encoder.pipeline import encode
+from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.settings import Settings
 from vmesh.formats.raster.picture import flatten
 from vmesh.formats.raster.rendering import render
@@ -39,7 +38,7 @@ def mesh_curve(
     for share in SHARES:
         wanted = max(4, min(round(share * mesh.n_vertices), mesh.width * mesh.height))
         chosen = settings.with_goal(vertices=wanted)
-        other = mesh if share == 1 else encode(array, progress=progress, **asdict(chosen))
+        other = mesh if share == 1 else encode_with(array, chosen, progress=progress)
         size = len(dumps(other.replaced(metadata=Metadata())))
         pixels = flatten(render(other, limits=limits), other.depth)
         points[size] = Point(size, psnr(original, pixels))

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable
 from html import escape
 from string import Template
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html.document import VIEWER, fill_page
@@ -16,8 +16,10 @@ from vmesh.formats.raster.picture import resize
 from vmesh.formats.raster.rendering import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
-from vmesh.report.study import Study
 from vmesh.report.tables import decibels, parts_table, sizes_table, times_table
+
+if TYPE_CHECKING:
+    from vmesh.report.study import Study
 
 _TITLE: Final = "Photographs and their meshes"
 _FRAME: Final = "border: 0; width: 100%; height: 60rem"
@@ -45,7 +47,7 @@ def frame_of(study: Study) -> str:
 
 
 def section_of(study: Study, number: int) -> str:
-    """What a page says of one photograph, as its section of that number.
+    """Section of a page, by its number, on one photograph.
 
     Names and metadata are text in it and nothing else.
     """
@@ -67,7 +69,7 @@ def section_of(study: Study, number: int) -> str:
 
 
 def _summary(study: Study) -> str:
-    """What the picture is, and what its mesh."""
+    """Summary of the picture and of its mesh."""
     mesh, size, closeness = study.mesh, len(study.data), study.closeness
     about = Description.of(mesh.metadata)
     said = ", ".join(filter(None, (about.title, about.author, about.rights)))
@@ -81,7 +83,7 @@ def _summary(study: Study) -> str:
 
 
 def _absences(study: Study) -> str:
-    """Which codecs have no curve, and why."""
+    """Reasons why some codecs have no curve."""
     return " ".join(
         f"{curve.codec} is left out: it {curve.absence}."
         for curve in study.curves

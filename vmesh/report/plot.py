@@ -73,7 +73,7 @@ def _draw(axes: Axes, curve: Curve, look: tuple[str, str, float]) -> None:
 
 
 def _label(axes: Axes, sizes: Sequence[int]) -> None:
-    """What the axes say: bytes by their logarithm, at the sizes that were measured."""
+    """Label the axes: bytes by their logarithm, at the sizes that were measured."""
     axes.set_xscale("log")
     axes.set_xticks(sizes, [f"{size:,}" for size in sizes])
     axes.set_xticks([], minor=True)

@@ -29,7 +29,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """What a codec makes of a picture at several sizes.
+    """Rate-distortion curve of a codec on one picture.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class Rival:
         return stream.getvalue()
 
     def _is_written(self) -> bool:
-        """Whether this Pillow writes and reads it: it is built with or without, or with a part."""
+        """Support by this Pillow, which is built with a codec, without it, or with a part of it."""
         try:
             _pixels_of(self._write(Image.new("RGB", (8, 8)), self.qualities[0]))
         except (KeyError, OSError, ValueError, RuntimeError, ImageError):

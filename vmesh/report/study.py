@@ -5,8 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
-from importlib import import_module
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy.typing as npt
@@ -16,8 +15,15 @@ from vmesh.codec.reader import loads
 from vmesh.codec.summary import describe
 from vmesh.codec.writer import dumps
 from vmesh.encoder.image import as_image
-from vmesh.encoder.pipeline import count_steps, encode
-from vmesh.encoder.settings import Settings
+from vmesh.encoder.pipeline import count_steps, encode_with
+from vmesh.encoder.settings import (
+    DEFAULT_EFFORT,
+    ColorMode,
+    Diffusion,
+    Method,
+    Sampler,
+    Settings,
+)
 from vmesh.formats.raster.picture import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -32,7 +38,7 @@ _SAMPLE_SIDE: Final = 32
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """What a report says of a photograph.
+    """Study of a photograph: its mesh, and what was measured on both.
 
     Parameters
     ----------
@@ -65,9 +71,9 @@ class Study:
 
     def _repr_html_(self) -> str:
         """The page on the photograph, for notebooks."""
-        # By its name, since it is made of studies.
-        frame: str = import_module("vmesh.report.page").frame_of(self)
-        return frame
+        from vmesh.report.page import frame_of
+
+        return frame_of(self)
 
 
 def study(
@@ -76,10 +82,24 @@ def study(
     name: str = "photograph",
     metadata: Metadata | None = None,
     limits: Limits = DEFAULT_LIMITS,
+    method: Method = "adaptive",
+    quality: int | None = None,
+    target_size: int | None = None,
+    target_psnr: float | None = None,
+    vertices: int | None = None,
+    density: float | None = None,
+    effort: int = DEFAULT_EFFORT,
+    gamma: float = 1.0,
+    sampler: Sampler = "multiclass",
+    diffusion: Diffusion = "zhou-fang",
+    colors: ColorMode = "fitted",
+    color_step: int | None = None,
+    tile: int | None = None,
+    seed: int = 0,
+    threads: int | None = None,
     progress: Progress | None = None,
-    **settings: Any,
 ) -> Study:
-    """Encode a photograph at the size asked for and at others, and by other codecs.
+    """Study of a photograph: encoded at the size asked for, at others, and by other codecs.
 
     A notebook shows the result as the page of ``vmesh report``, for which matplotlib is needed.
 
@@ -88,15 +108,16 @@ def study(
     photograph : array_like
         As :func:`vmesh.encode` takes it.
     name : str
-        What stands above its figures.
+        Heading of its figures.
     metadata : Metadata, optional
-        What travels with the picture.
+        Metadata that travel with the picture.
     limits : Limits
-        What the mesh may ask for.
+        Limits on the mesh.
+    method, quality, target_size, target_psnr, vertices, density, effort, gamma, sampler, \
+diffusion, colors, color_step, tile, seed, threads
+        As for :func:`vmesh.encode`.
     progress : callable, optional
         Called with the name of each stage as it begins, and again as it goes on.
-    **settings
-        Fields of :class:`vmesh.Settings`.
 
     Returns
     -------
@@ -108,12 +129,44 @@ def study(
         If the array or a setting is not as described, the size or PSNR asked for cannot be met, or
         the mesh is more than `limits` allow.
     """
-    array, chosen, report = as_image(photograph), Settings(**settings), progress or silent
+    settings = Settings(
+        method=method,
+        quality=quality,
+        target_size=target_size,
+        target_psnr=target_psnr,
+        vertices=vertices,
+        density=density,
+        effort=effort,
+        gamma=gamma,
+        sampler=sampler,
+        diffusion=diffusion,
+        colors=colors,
+        color_step=color_step,
+        tile=tile,
+        seed=seed,
+        threads=threads,
+    )
+    return study_with(
+        photograph, settings, name=name, metadata=metadata, limits=limits, progress=progress
+    )
+
+
+def study_with(
+    photograph: npt.ArrayLike,
+    settings: Settings,
+    *,
+    name: str = "photograph",
+    metadata: Metadata | None = None,
+    limits: Limits = DEFAULT_LIMITS,
+    progress: Progress | None = None,
+) -> Study:
+    """Study of a photograph by settings that are made already; the rest is as for `study`."""
+    array, report = as_image(photograph), progress or silent
     original = flatten(array)
-    _compile(array, chosen, limits)
+    _compile(array, settings, limits)
     seconds: dict[str, float] = {}
     with _timed(seconds, "encode"):
-        mesh = encode(array, metadata=metadata, progress=report, **settings)
+        mesh = encode_with(array, settings, metadata=metadata, progress=report)
     limits.check_vertices(mesh.n_vertices)
     with _timed(seconds, "write"):
         data = dumps(mesh)
@@ -122,7 +175,7 @@ def study(
     with _timed(seconds, "render"):
         rendered = render(mesh, limits=limits)
     closeness = compare(original, flatten(rendered, mesh.depth))
-    own = mesh_curve(array, original, mesh, chosen, limits, report)
+    own = mesh_curve(array, original, mesh, settings, limits, report)
     curves = (own, *_rivals_of(own, original, report))
     figures = describe(data, by_parts=True, limits=limits)
     return Study(name, original, mesh, data, figures, closeness, seconds, curves)
@@ -136,7 +189,7 @@ def count_study_steps(settings: Settings) -> int:
 def _compile(array: SampleArray, settings: Settings, limits: Limits) -> None:
     """Run every stage on a corner of the picture: compiling, once, is no part of its timings."""
     corner = array[:_SAMPLE_SIDE, :_SAMPLE_SIDE]
-    mesh = encode(corner, **asdict(settings.with_goal()))
+    mesh = encode_with(corner, settings.with_goal())
     render(loads(dumps(mesh), limits=limits), limits=limits)
 
 
@@ -149,7 +202,7 @@ def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
 
 
 def _rivals_of(own: Curve, original: UInt8Array, progress: Progress) -> Iterator[Curve]:
-    """What other codecs make of the bytes of a curve's files."""
+    """Curves of other codecs, at the sizes of a curve's files."""
     budgets = [point.n_bytes for point in own.points]
     for rival in RIVALS:
         progress(rival.name)

@@ -22,14 +22,14 @@ def sizes_table(curves: Sequence[Curve]) -> str:
 
 
 def parts_table(figures: Mapping[str, Any]) -> str:
-    """What each part of a file takes, by the figures of the file, and last the file."""
+    """Bytes of each part of a file, by the figures of the file, and last those of the file."""
     parts = [*figures["parts"], {"part": "file", **figures}]
     rows = [(x["part"], f"{x['bytes']:,}", f"{x['bits_per_vertex']:.2f}") for x in parts]
     return _table("Bytes by part", ["part", "bytes", "bits per vertex"], rows)
 
 
 def times_table(seconds: Mapping[str, float]) -> str:
-    """How long each stage took."""
+    """Seconds that each stage took."""
     rows = [(stage, f"{duration:.3f}") for stage, duration in seconds.items()]
     return _table("Time", ["stage", "seconds"], rows)
 

@@ -24,7 +24,8 @@ import numpy as np
 from vmesh.arrays import Int32Array, Int64Array
 from vmesh.encoder.draft import UNIT
 from vmesh.grid import Grid
-from vmesh.mesh import doubled_areas, raster_keys, sorted_triangles
+from vmesh.mesh.areas import doubled_areas
+from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 
 # Vertices so many half pixels beside a line are put on it. With 1 a notch is left here and there
 # where an edge of the picture crosses the line. kodim05, 15 and 23 in tiles of 256 pixels have

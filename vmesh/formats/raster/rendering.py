@@ -14,7 +14,8 @@ from vmesh.color_lattice import rescale
 from vmesh.formats.metadata.exif import EXIF_START
 from vmesh.kernels.scanline import SUBPIXEL, draw, measure
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
-from vmesh.mesh import Matrix, Mesh, Metadata, Placement
+from vmesh.mesh import Mesh, Metadata
+from vmesh.mesh.placement import Matrix, Placement
 
 MAX_SUPERSAMPLE: Final = 16
 

@@ -13,7 +13,7 @@ Alpha is drawn as a mask of the same make.
 from __future__ import annotations
 
 import gzip
-from typing import Any, BinaryIO, Final
+from typing import BinaryIO, Final
 
 import numpy as np
 from lxml import etree
@@ -142,14 +142,6 @@ def _channels(
         return None
     weights = np.full(rgba.shape[:2], 255, np.uint8) if weight is None else rgba[:, :, weight]
     return Photograph(rgba[:, :, shown], weights)
-
-
-def write_svgz(
-    mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS, **options: Any
-) -> None:
-    """Write a mesh as a compressed SVG document; as :func:`write_svg`."""
-    with gzipped(stream) as compressed:
-        write_svg(mesh, compressed, limits=limits, **options)
 
 
 def gzipped(stream: BinaryIO) -> gzip.GzipFile:

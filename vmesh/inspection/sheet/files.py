@@ -26,4 +26,4 @@ def write_sheet(
         _VECTOR_WRITERS[suffix](sheet, stream)
     else:
         raster = FORMATS[suffix]
-        raster.writer()(draw_sheet(sheet, limits=limits), stream, raster.raster_name)
+        raster.writer()(draw_sheet(sheet, limits=limits), stream, raster.name)
