@@ -18,7 +18,10 @@ from typing import Any, Final
 
 import click
 import numpy as np
-from codec_figures import (
+from PIL import Image
+
+import vmesh
+from benchmarks.codec_figures import (
     METRICS,
     VMESH,
     Row,
@@ -32,7 +35,7 @@ from codec_figures import (
     shares_table,
     write_rows,
 )
-from measurement import (
+from benchmarks.measurement import (
     Photograph,
     Printer,
     Table,
@@ -43,8 +46,7 @@ from measurement import (
     measure_process,
     version_of,
 )
-from PIL import Image
-from raster_codecs import (
+from benchmarks.raster_codecs import (
     JPEG2000,
     CodecSearch,
     Coded,
@@ -52,9 +54,7 @@ from raster_codecs import (
     describe_codecs,
     lossless_sizes,
 )
-from synthetic_pictures import synthetic_pictures
-
-import vmesh
+from benchmarks.synthetic_pictures import synthetic_pictures
 from vmesh.arrays import UInt8Array
 
 PAPER: Final = "paper"

@@ -13,7 +13,9 @@ from typing import Any, Final
 import click
 import numpy as np
 import numpy.typing as npt
-from measurement import (
+
+import vmesh
+from benchmarks.measurement import (
     Photograph,
     Printer,
     Table,
@@ -26,8 +28,6 @@ from measurement import (
     time_actions,
     version_of,
 )
-
-import vmesh
 from vmesh.codec.layout import LISTED_TRIANGLES, Header
 from vmesh.codec.mesh_coder import encode_mesh
 from vmesh.codec.reader import measure

@@ -11,10 +11,10 @@ from pathlib import Path
 from statistics import mean
 from typing import Final
 
-from measurement import Photograph, Table, import_optional
 from PIL import Image
-from raster_codecs import Coded, available_codecs
 
+from benchmarks.measurement import Photograph, Table, import_optional
+from benchmarks.raster_codecs import Coded, available_codecs
 from vmesh.arrays import UInt8Array
 from vmesh.metrics import compare
 

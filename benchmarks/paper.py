@@ -14,7 +14,10 @@ from typing import Any, Final, get_args
 
 import click
 import numpy as np
-from measurement import (
+from scipy.spatial import Delaunay
+
+import vmesh
+from benchmarks.measurement import (
     Photograph,
     Printer,
     Table,
@@ -25,9 +28,6 @@ from measurement import (
     markdown_option,
     time_actions,
 )
-from scipy.spatial import Delaunay
-
-import vmesh
 from vmesh.arrays import UInt8Array
 from vmesh.codec.reader import measure
 from vmesh.encoder.colors import fit_colors

@@ -19,7 +19,9 @@ from pathlib import Path
 from typing import Any, Final
 
 import click
-from measurement import (
+
+import vmesh
+from benchmarks.measurement import (
     Photograph,
     Printer,
     Table,
@@ -29,9 +31,7 @@ from measurement import (
     markdown_option,
     version_of,
 )
-from tracers import Tracing, tracings_of
-
-import vmesh
+from benchmarks.tracers import Tracing, tracings_of
 from vmesh.formats.raster.picture import flatten
 from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh

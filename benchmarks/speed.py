@@ -17,7 +17,10 @@ from typing import Any, BinaryIO, Final
 
 import click
 import numpy as np
-from measurement import (
+from PIL import Image
+
+import vmesh
+from benchmarks.measurement import (
     Photograph,
     Printer,
     Table,
@@ -31,9 +34,6 @@ from measurement import (
     time_actions,
     version_of,
 )
-from PIL import Image
-
-import vmesh
 from vmesh.arrays import Float64Array, UInt8Array
 from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
 from vmesh.formats.pdf.document import write_pdf

@@ -10,9 +10,9 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from measurement import import_optional
 from PIL import Image, features
 
+from benchmarks.measurement import import_optional
 from vmesh.arrays import UInt8Array
 from vmesh.metrics import psnr
 from vmesh.report.search import largest_within
