@@ -17,8 +17,10 @@ import numpy as np
 from PIL import Image
 
 import vmesh
-from benchmarks.measurement import images_option, load_photographs
-from benchmarks.raster_codecs import JPEG, WEBP, CodecSearch
+from benchmarks.options import images_option
+from benchmarks.photographs import load_photographs
+from benchmarks.raster.codecs import JPEG, WEBP
+from benchmarks.raster.search import CodecSearch
 from vmesh.arrays import UInt8Array
 from vmesh.formats.raster.picture import flatten
 from vmesh.metrics import psnr
@@ -99,7 +101,7 @@ ENTRIES: Final = {
 )
 def main(folder: Path, bits: float, effort: int, target: Path) -> None:
     """Write the gallery; its pictures stand in a folder of its name beside it."""
-    found = {photo.name: photo.pixels for photo in load_photographs(folder, tuple(ENTRIES))}
+    found = {photo.name: photo.pixels for photo in load_photographs(folder, names=tuple(ENTRIES))}
     pictures = target.with_suffix("")
     pictures.mkdir(exist_ok=True)
     parts = [_START.format(bits=bits, effort=effort, side=_SIDE)]

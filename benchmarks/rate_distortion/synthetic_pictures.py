@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import gaussian_filter
 
-from benchmarks.measurement import Photograph
+from benchmarks.photographs import Photograph
 from vmesh.arrays import Float64Array, UInt8Array
 
 WIDTH: Final = 768

@@ -11,7 +11,8 @@ from typing import Final
 
 from PIL import Image
 
-from benchmarks.measurement import Photograph, import_optional
+from benchmarks.photographs import Photograph
+from benchmarks.software import import_optional
 
 # What decides on size and quality: bits of a colour, levels between layers, area of specks that
 # are left out. Finer than the first, files of photographs pass 20 MB.
