@@ -111,7 +111,7 @@ def main(
 ) -> None:
     """Measure rate and distortion on a folder of photographs."""
     photographs = reduced(load_photographs(folder, limit), factor)
-    drawings = reduced(synthetic_pictures()[:limit], factor) if "pictures" in parts else []
+    drawings = reduced(synthetic_pictures(limit), factor) if "pictures" in parts else []
     printer = Printer(markdown)
     known = {
         "rates": Part(

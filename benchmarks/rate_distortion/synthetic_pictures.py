@@ -40,8 +40,8 @@ _PHANTOM_NOISE: Final = 4.0  # standard deviation, of 255
 _PHANTOM_BLUR: Final = 0.8  # pixels
 
 
-def synthetic_pictures() -> list[Photograph]:
-    """All of the pictures, each WIDTH x HEIGHT pixels."""
+def synthetic_pictures(limit: int | None = None) -> list[Photograph]:
+    """The first pictures, or all of them, each WIDTH x HEIGHT pixels."""
     drawings: dict[str, Callable[[], UInt8Array]] = {
         "gradient": draw_gradient,
         "cartoon": draw_cartoon,
@@ -50,7 +50,7 @@ def synthetic_pictures() -> list[Photograph]:
         "map": draw_map,
         "page of text": draw_page,
     }
-    return [Photograph(name, draw()) for name, draw in drawings.items()]
+    return [Photograph(name, draw()) for name, draw in list(drawings.items())[:limit]]
 
 
 def draw_gradient() -> UInt8Array:
