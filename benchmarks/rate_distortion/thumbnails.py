@@ -22,7 +22,7 @@ def measure_thumbnails(photograph: Photograph, *, effort: int) -> list[Row]:
     """Every codec at a few hundred bytes."""
     click.echo(f"thumbnail of {photograph.name}", err=True)
     image = Image.fromarray(photograph.pixels)
-    scale = THUMBNAIL_SIDE / max(image.size)
+    scale = min(1.0, THUMBNAIL_SIDE / max(image.size))
     size = (max(1, round(image.width * scale)), max(1, round(image.height * scale)))
     reduced = np.asarray(image.resize(size, Image.Resampling.LANCZOS))
     thumbnail = Photograph(photograph.name, reduced)
