@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from measurement import Photograph
 from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import gaussian_filter
 
+from benchmarks.photographs import Photograph
 from vmesh.arrays import Float64Array, UInt8Array
 
 WIDTH: Final = 768
@@ -40,8 +40,8 @@ _PHANTOM_NOISE: Final = 4.0  # standard deviation, of 255
 _PHANTOM_BLUR: Final = 0.8  # pixels
 
 
-def synthetic_pictures() -> list[Photograph]:
-    """All of the pictures, each WIDTH x HEIGHT pixels."""
+def synthetic_pictures(limit: int | None = None) -> list[Photograph]:
+    """The first pictures, or all of them, each WIDTH x HEIGHT pixels."""
     drawings: dict[str, Callable[[], UInt8Array]] = {
         "gradient": draw_gradient,
         "cartoon": draw_cartoon,
@@ -50,7 +50,7 @@ def synthetic_pictures() -> list[Photograph]:
         "map": draw_map,
         "page of text": draw_page,
     }
-    return [Photograph(name, draw()) for name, draw in drawings.items()]
+    return [Photograph(name, draw()) for name, draw in list(drawings.items())[:limit]]
 
 
 def draw_gradient() -> UInt8Array:
