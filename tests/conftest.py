@@ -11,6 +11,8 @@ from PIL import Image
 
 from vmesh.arrays import UInt8Array
 
+pytest_plugins = ["tests.known_skips"]
+
 # The same examples in every run, and no deadline: the first example may compile a kernel.
 settings.register_profile("vmesh", deadline=None, derandomize=True)
 settings.load_profile("vmesh")

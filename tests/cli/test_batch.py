@@ -104,7 +104,7 @@ def test_what_makes_no_sense_is_wrong_usage(photos: Path, tmp_path: Path) -> Non
 
 
 @pytest.mark.skipif(
-    sys.platform == "win32" or os.geteuid() == 0, reason="no folders that cannot be written"
+    sys.platform == "win32" or os.geteuid() == 0, reason="root may write everywhere"
 )
 def test_a_folder_that_cannot_be_written_is_told_at_once(photos: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 import pytest
 
 import vmesh
+from tests.programs import need_program
 from tests.spec.build_conformance import build, expected, sha256
 from tests.spec.test_spec import SPEC
 from vmesh.codec.layout import VERSION
@@ -167,9 +167,9 @@ def test_the_runner_refuses_what_it_cannot_run() -> None:
 # --- the decoder in JavaScript ------------------------------------------------------------------
 
 
-@pytest.mark.skipif(shutil.which("node") is None, reason="there is no Node on this machine")
 def test_the_decoder_in_javascript_passes_all_files() -> None:
-    decoder = f"node {_ROOT / 'vmesh' / 'web' / 'decoder' / 'decode.js'} {{in}} {{out}}"
+    node = need_program("node", "nodejs")
+    decoder = f"{node} {_ROOT / 'vmesh' / 'web' / 'decoder' / 'decode.js'} {{in}} {{out}}"
     status, output = run(decoder)
     assert status == 0, output
     assert os.linesep.join(output.splitlines()) == (

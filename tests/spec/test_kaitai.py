@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import json
-import shutil
+import os
 import subprocess
-from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 import pytest
 import yaml
 
+from tests.programs import need_program
 from tests.spec.kaitai import Reader, parse
 from vmesh.codec import layout
 from vmesh.codec.container import read_file
 from vmesh.codec.policy import Strict
 
-_SPEC: Final = Path(__file__).parents[2] / "spec"
+_ROOT: Final = Path(__file__).parents[2]
+_SPEC: Final = _ROOT / "spec"
+_NODE_MODULES: Final = _ROOT / "tests" / "web" / "node_modules"
 _KSY: Final = yaml.safe_load((_SPEC / "vmesh.ksy").read_text(encoding="utf-8"))
 _FILES: Final = sorted((_SPEC / "conformance" / "valid").glob("*.vmesh"))
 _COMPILE: Final = """
@@ -30,19 +32,21 @@ compiler.compile("python", ksy, null, false).then(
 """
 
 
-def node(script: str, given: str = "") -> subprocess.CompletedProcess[str]:
-    """What Node makes of a script."""
-    return subprocess.run(
-        ["node", "-e", script], input=given, capture_output=True, text=True, check=False
+def compiled(ksy: dict[str, Any]) -> str:
+    """What the compiler of Kaitai Struct makes of a description: a module in Python."""
+    node = need_program("node", "nodejs")
+    if not (_NODE_MODULES / "kaitai-struct-compiler").is_dir():
+        pytest.skip("the compiler of Kaitai Struct is missing (npm ci --prefix tests/web)")
+    done = subprocess.run(
+        [node, "-e", _COMPILE],
+        input=json.dumps(ksy),
+        env={**os.environ, "NODE_PATH": str(_NODE_MODULES)},
+        capture_output=True,
+        text=True,
+        check=False,
     )
-
-
-@cache
-def has_compiler() -> bool:
-    """Whether Node finds the compiler of Kaitai Struct, as NODE_PATH may say."""
-    if shutil.which("node") is None:
-        return False
-    return node("require.resolve('kaitai-struct-compiler')").returncode == 0
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 def content_of(chunk: Any) -> Any:
@@ -110,14 +114,9 @@ def test_the_description_tells_the_fields_of_a_file(path: Path) -> None:
     assert reader.at == 8 * len(data)
 
 
-@pytest.mark.skipif(
-    not has_compiler(), reason="Node finds no kaitai-struct-compiler (npm install, NODE_PATH)"
-)
 def test_the_compiled_description_tells_the_same() -> None:
-    done = node(_COMPILE, json.dumps(_KSY))
-    assert done.returncode == 0, done.stderr
     module: dict[str, Any] = {}
-    exec(done.stdout, module)
+    exec(compiled(_KSY), module)
     for path in _FILES:
         data = path.read_bytes()
         assert figures_of(module["Vmesh"].from_bytes(data)) == expected(data)

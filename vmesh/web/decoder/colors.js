@@ -2,7 +2,7 @@
 
 import { check } from "./errors.js";
 import { MOST_PARENTS, NO_PARENT, hierarchyOf } from "./hierarchy.js";
-import { Contexts } from "./rangecoder.js";
+import { Contexts } from "./range_coder.js";
 
 const FULL_WEIGHT = 4096;
 const MOST_DEVIATION = 511;
@@ -24,7 +24,7 @@ const MORE_THAN = [
 ];
 
 /**
- * @param {import("./rangecoder.js").RangeDecoder} decoder
+ * @param {import("./range_coder.js").RangeDecoder} decoder
  * @param {import("./delaunay.js").Triangulation} triangulation the implied one; it is used up
  * @param {Uint8Array} sides of the canvas that each vertex is on
  * @param {{steps: number[], depth: number}} header
@@ -56,11 +56,28 @@ export function readLevels(decoder, triangulation, sides, { steps, depth }) {
   return levels;
 }
 
+/** @param {number} difference of the first components of two vertices */
 function weightOf(difference) {
   return Math.max(Math.floor(FULL_WEIGHT / (1 + 2 * Math.abs(difference))), 1);
 }
 
-/** Prediction, spread and lean from the levels of n parents and their weights. */
+/**
+ * What is expected of a level; spread and lean choose the contexts.
+ *
+ * @typedef {object} Expectation
+ * @property {number} prediction
+ * @property {number} spread
+ * @property {number} lean
+ */
+
+/**
+ * The expectation from the levels of n parents and their weights.
+ *
+ * @param {Float64Array} weights
+ * @param {Float64Array} known levels
+ * @param {number} n
+ * @returns {Expectation}
+ */
 function predict(weights, known, n) {
   if (n === 0) return { prediction: 0, spread: N_SPREADS - 1, lean: 0 };
   let w = 0;
@@ -80,6 +97,12 @@ function predict(weights, known, n) {
  * integer if a reaches b times it. All is exact: W is at most 9 * 4096 and a deviation at most 511,
  * so S * W and D * D are at most (9 * 4096 * 511)**2 < 2**49, as is their difference; 1024 is a
  * power of two; and the largest threshold times W * W is below 2**49.
+ *
+ * @param {Float64Array} weights
+ * @param {Float64Array} known levels
+ * @param {number} n
+ * @param {number} w sum of the weights
+ * @param {number} prediction
  */
 function spreadOf(weights, known, n, w, prediction) {
   let d = 0;
@@ -95,12 +118,22 @@ function spreadOf(weights, known, n, w, prediction) {
   return spread;
 }
 
+/**
+ * @param {number} value
+ * @param {number} least
+ * @param {number} most
+ */
 function clamp(value, least, most) {
   return Math.min(Math.max(value, least), most);
 }
 
 /** Reads the levels of one component. */
 class LevelReader {
+  /**
+   * @param {import("./range_coder.js").RangeDecoder} decoder
+   * @param {number} component
+   * @param {number} highest level
+   */
   constructor(decoder, component, highest) {
     this.decoder = decoder;
     this.highest = highest;
@@ -111,6 +144,7 @@ class LevelReader {
     this.signs = Contexts.even(3);
   }
 
+  /** @param {Expectation} expectation */
   read({ prediction, spread, lean }) {
     const size = this.readSize(spread);
     const isNegative = size > 0 && this.decoder.bit(this.signs, lean);
@@ -119,6 +153,7 @@ class LevelReader {
     return level;
   }
 
+  /** @param {number} spread */
   readSize(spread) {
     for (let size = 0; size < MOST_UNARY; size++) {
       if (!this.decoder.bit(this.sizes, spread * MOST_UNARY + size)) return size;
@@ -134,11 +169,15 @@ class LevelReader {
   }
 }
 
-/** Contexts of the bits in unary: for each spread MOST_UNARY, the last ones with the same odds. */
+/**
+ * Contexts of the bits in unary: for each spread MOST_UNARY, the last ones with the same start.
+ *
+ * @param {number[][]} moreThan of a component
+ */
 function sizeContexts(moreThan) {
   const columns = Array.from({ length: MOST_UNARY }, (_, size) => moreThan[Math.min(size, 2)]);
-  const odds = moreThan[0].map((_, spread) => columns.map((column) => 2048 * column[spread]));
-  return Contexts.preset(odds.flat());
+  const rows = moreThan[0].map((_, spread) => columns.map((column) => 2048 * column[spread]));
+  return Contexts.preset(rows.flat());
 }
 
 /**

@@ -25,7 +25,10 @@ const MOST_TILE_SIDE = 4096;
  * @property {number} farY y of the lower border
  */
 
-/** @returns {Header} */
+/**
+ * @param {Reader} reader
+ * @returns {Header}
+ */
 function readHeader(reader) {
   for (const expected of SIGNATURE) check(reader.byte() === expected, "signature");
   check(reader.byte() >> 4 === MAJOR_VERSION, "version");
@@ -50,7 +53,16 @@ function readHeader(reader) {
   return sized({ subdivision, connectivity, steps, depth }, width, height, nVertices, "header");
 }
 
-/** A header with a size and a number of vertices that fits it. */
+/**
+ * A header with a size and a number of vertices that fits it.
+ *
+ * @param {Pick<Header, "subdivision" | "connectivity" | "steps" | "depth">} header
+ * @param {number} width
+ * @param {number} height
+ * @param {number} nVertices
+ * @param {import("./errors.js").ErrorCode} code of the error if it does not fit
+ * @returns {Header}
+ */
 function sized(header, width, height, nVertices, code) {
   const farX = width * 2 ** header.subdivision;
   const farY = height * 2 ** header.subdivision;
@@ -58,7 +70,15 @@ function sized(header, width, height, nVertices, code) {
   return { ...header, width, height, nVertices, farX, farY };
 }
 
-/** The next chunk. A letter that `allowed` does not match is refused after all else. */
+/** @typedef {{tag: string, content: Uint8Array}} Chunk */
+
+/**
+ * The next chunk. A letter that is not allowed is refused after all else.
+ *
+ * @param {Reader} reader
+ * @param {RegExp} allowed
+ * @returns {Chunk}
+ */
 function readChunk(reader, allowed) {
   const start = reader.position;
   const tag = String.fromCharCode(reader.byte());
@@ -69,17 +89,21 @@ function readChunk(reader, allowed) {
   return { tag, content };
 }
 
-/** The chunks up to and including `M` or `G`. */
+/**
+ * The chunks before `M` or `G`, and that one.
+ *
+ * @param {Reader} reader
+ */
 function readChunks(reader) {
+  /** @type {Chunk[]} */
   const chunks = [];
-  let chunk;
-  do {
-    chunk = readChunk(reader, /[MGa-z]/);
+  for (;;) {
+    const chunk = readChunk(reader, /[MGa-z]/);
     const { tag } = chunk;
     check(!METADATA_TAGS.includes(tag) || chunks.every((other) => other.tag !== tag), "chunk");
+    if (!/[a-z]/.test(tag)) return { chunks, last: chunk };
     chunks.push(chunk);
-  } while (/[a-z]/.test(chunk.tag));
-  return chunks;
+  }
 }
 
 /**
@@ -92,7 +116,13 @@ function readChunks(reader) {
  * @property {number} y its upper side
  */
 
-/** @returns {Part[]} the tiles that the content of `G` stands for, from the chunks that follow */
+/**
+ * @param {Reader} reader
+ * @param {Header} header of the file
+ * @param {Uint8Array} content of `G`
+ * @param {import("./limits.js").Limits} limits
+ * @returns {Part[]} the tiles that it stands for, from the chunks that follow
+ */
 function readTiles(reader, header, content, limits) {
   const grid = new Reader(content, "tiles");
   const side = grid.varint("tiles");
@@ -108,7 +138,16 @@ function readTiles(reader, header, content, limits) {
   });
 }
 
-/** The tile at a place in pixels. */
+/**
+ * The tile at a place in pixels.
+ *
+ * @param {Header} file
+ * @param {number} side
+ * @param {number} left
+ * @param {number} top
+ * @param {Uint8Array} bytes
+ * @returns {Part}
+ */
 function openTile(file, side, left, top, bytes) {
   const width = Math.min(side, file.width - left);
   const height = Math.min(side, file.height - top);
@@ -119,23 +158,33 @@ function openTile(file, side, left, top, bytes) {
   return { header, content, x: left * 2 ** file.subdivision, y: top * 2 ** file.subdivision };
 }
 
-/** @returns {Part[]} */
+/**
+ * @param {Reader} reader
+ * @param {Header} header
+ * @param {Uint8Array} content of `M`
+ * @returns {Part[]}
+ */
 function readWhole(reader, header, content) {
   check(reader.atEnd(), "trailing");
   check(isPossible(header, content), "header");
   return [{ header, content, x: 0, y: 0 }];
 }
 
-/** Whether so many bytes may hold so many levels. */
+/**
+ * Whether so many bytes may hold so many levels.
+ *
+ * @param {Header} header
+ * @param {Uint8Array} content
+ */
 function isPossible({ nVertices, steps }, content) {
   return nVertices * steps.length <= LEVELS_PER_BYTE * (content.length + 1);
 }
 
 /**
  * @param {Uint8Array} bytes a file
- * @param {typeof import("./limits.js").DEFAULT_LIMITS} limits
- * @returns {{header: Header, isTiled: boolean, parts: Part[],
- *   chunks: {tag: string, content: Uint8Array}[]}} `chunks` are those that are not of the mesh
+ * @param {import("./limits.js").Limits} limits
+ * @returns {{header: Header, isTiled: boolean, parts: Part[], chunks: Chunk[]}} `chunks` are those
+ *   that are not of the mesh
  */
 export function readFile(bytes, limits) {
   const reader = new Reader(bytes, "truncated");
@@ -143,10 +192,11 @@ export function readFile(bytes, limits) {
   check(header.width * header.height <= limits.pixels, "limit");
   check(header.nVertices <= limits.vertices, "limit");
 
-  const chunks = readChunks(reader);
-  const { tag, content } = chunks.pop();
-  const isTiled = tag === "G";
-  const parts = (isTiled ? readTiles : readWhole)(reader, header, content, limits);
+  const { chunks, last } = readChunks(reader);
+  const isTiled = last.tag === "G";
+  const parts = isTiled
+    ? readTiles(reader, header, last.content, limits)
+    : readWhole(reader, header, last.content);
   // Tiles may have more vertices than the header says, until they are joined.
   const nVertices = parts.reduce((sum, part) => sum + part.header.nVertices, 0);
   const nBytes = parts.reduce((sum, part) => sum + part.content.length, 0);

@@ -16,30 +16,43 @@ import { DEFAULT_LIMITS, VmeshError, decode, render } from "./vmesh.js";
 
 /** Bytes to which a metadata chunk may inflate. */
 const MOST_METADATA = 2 ** 24;
+/**
+ * What `inflateSync` returns with the option `info`.
+ *
+ * @typedef {{buffer: Uint8Array, engine: import("node:zlib").Inflate}} InflatedWithInfo
+ */
+/** @type {Record<number, string>} */
 const TUPLE_TYPES = { 1: "GRAYSCALE", 3: "RGB", 4: "RGB_ALPHA" };
 
-function* rowsOf(array, length) {
-  for (let at = 0; at < array.length; at += length) yield array.subarray(at, at + length);
+/**
+ * @param {Int32Array} array
+ * @param {number} row
+ * @param {number} length of a row
+ */
+function rowText(array, row, length) {
+  return array.subarray(row * length, (row + 1) * length).join(" ");
 }
 
+/** @param {import("./vmesh.js").Mesh} mesh */
 function meshText({ width, height, subdivision, depth, steps, vertices, levels, triangles }) {
+  const [nVertices, nTriangles] = [vertices.length / 2, triangles.length / 3];
   const lines = [
     "vmesh 1.0",
     `canvas ${width} ${height}`,
     `subdivision ${subdivision}`,
     `depth ${depth}`,
     `steps ${steps.join(" ")}`,
-    `vertices ${vertices.length / 2}`,
+    `vertices ${nVertices}`,
   ];
-  const levelRows = rowsOf(levels, steps.length);
-  for (const point of rowsOf(vertices, 2)) {
-    lines.push(`${point.join(" ")} ${levelRows.next().value.join(" ")}`);
+  for (let v = 0; v < nVertices; v++) {
+    lines.push(`${rowText(vertices, v, 2)} ${rowText(levels, v, steps.length)}`);
   }
-  lines.push(`triangles ${triangles.length / 3}`);
-  for (const triangle of rowsOf(triangles, 3)) lines.push(triangle.join(" "));
+  lines.push(`triangles ${nTriangles}`);
+  for (let t = 0; t < nTriangles; t++) lines.push(rowText(triangles, t, 3));
   return `${lines.join("\n")}\n`;
 }
 
+/** @param {import("./render.js").Picture} picture */
 function pamFile({ width, height, components, depth, data }) {
   const header = [
     "P7",
@@ -50,34 +63,52 @@ function pamFile({ width, height, components, depth, data }) {
     `TUPLTYPE ${TUPLE_TYPES[components]}`,
     "ENDHDR",
   ];
-  return Buffer.concat([Buffer.from(`${header.join("\n")}\n`), bytesOf(data, depth)]);
+  return Buffer.concat([Buffer.from(`${header.join("\n")}\n`), bytesOf(data)]);
 }
 
-/** Pictures need no metadata, so that `decode` leaves them alone; a whole file is checked here. */
+/**
+ * Pictures need no metadata, so that `decode` leaves them alone; a whole file is checked here.
+ *
+ * @param {Uint8Array} bytes
+ */
 function checkMetadata(bytes) {
   for (const { tag, content } of readFile(bytes, DEFAULT_LIMITS).chunks) {
     if (METADATA_TAGS.includes(tag)) checkStream(content);
   }
 }
 
-/** Checks that a content is one complete zlib stream of one byte or more. */
+/**
+ * Checks that a content is one complete zlib stream of one byte or more.
+ *
+ * @param {Uint8Array} content
+ */
 function checkStream(content) {
   try {
-    const { buffer, engine } = inflateSync(content, { info: true, maxOutputLength: MOST_METADATA });
+    const inflated = inflateSync(content, { info: true, maxOutputLength: MOST_METADATA });
+    const { buffer, engine } = /** @type {InflatedWithInfo} */ (/** @type {unknown} */ (inflated));
     check(buffer.length > 0 && engine.bytesWritten === content.length, "metadata");
   } catch (error) {
-    throw new VmeshError(error.code === "ERR_BUFFER_TOO_LARGE" ? "limit" : "metadata");
+    const { code } = /** @type {NodeJS.ErrnoException} */ (error);
+    throw new VmeshError(code === "ERR_BUFFER_TOO_LARGE" ? "limit" : "metadata");
   }
 }
 
-/** The samples in bytes, the upper one first. */
-function bytesOf(data, depth) {
-  if (depth === 8) return data;
+/**
+ * The samples in bytes, the upper one first.
+ *
+ * @param {Uint8Array | Uint16Array} data
+ */
+function bytesOf(data) {
+  if (data instanceof Uint8Array) return data;
   const bytes = new Uint8Array(2 * data.length);
   data.forEach((sample, i) => bytes.set([sample >> 8, sample & 255], 2 * i));
   return bytes;
 }
 
+/**
+ * @param {string[]} paths
+ * @returns {number} the exit status
+ */
 function main([input, output]) {
   if (output === undefined) {
     console.error("usage: node decode.js IN OUT");

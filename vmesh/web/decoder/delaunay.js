@@ -12,6 +12,13 @@
 import { cross, isInCircle } from "./geometry.js";
 import { Subdivision } from "./subdivision.js";
 
+/**
+ * The edge of a hull from its first vertex, with the hull on the left, and that from its last
+ * vertex, with the hull on the right.
+ *
+ * @typedef {[number, number]} Hull
+ */
+
 export class Triangulation extends Subdivision {
   /** @param {Int32Array} points x and y of distinct vertices in raster order, at least two */
   constructor(points) {
@@ -21,8 +28,10 @@ export class Triangulation extends Subdivision {
 
   /**
    * Triangulates the vertices from `start` to before `end`.
-   * @returns {[number, number]} the edge of the hull from its first vertex, with the hull on the
-   *   left, and that from its last vertex, with the hull on the right
+   *
+   * @param {number} start
+   * @param {number} end
+   * @returns {Hull}
    */
   divide(start, end) {
     if (end - start === 2) return this.makeSegment(start);
@@ -33,11 +42,19 @@ export class Triangulation extends Subdivision {
     return this.merge(earlier, later);
   }
 
+  /**
+   * @param {number} v the first of two vertices
+   * @returns {Hull}
+   */
   makeSegment(v) {
     const e = this.makeEdge(v, v + 1);
     return [e, e ^ 1];
   }
 
+  /**
+   * @param {number} v the first of three vertices
+   * @returns {Hull}
+   */
   makeTriangle(v) {
     const e = this.makeEdge(v, v + 1);
     const f = this.makeEdge(v + 1, v + 2);
@@ -48,6 +65,11 @@ export class Triangulation extends Subdivision {
     return turn > 0 ? [e, f ^ 1] : [g ^ 1, g];
   }
 
+  /**
+   * @param {Hull} earlier
+   * @param {Hull} later
+   * @returns {Hull}
+   */
   merge([earlierOuter, earlierInner], [laterInner, laterOuter]) {
     let base = this.connectHulls(earlierInner, laterInner);
     if (this.destOf(base) === this.originOf[earlierOuter]) earlierOuter = base ^ 1;
@@ -56,7 +78,12 @@ export class Triangulation extends Subdivision {
     return [earlierOuter, laterOuter];
   }
 
-  /** The lower common tangent, from the later vertices to the earlier ones. */
+  /**
+   * The lower common tangent, from the later vertices to the earlier ones.
+   *
+   * @param {number} earlier an edge of their hull
+   * @param {number} later
+   */
   connectHulls(earlier, later) {
     for (;;) {
       if (this.isLeftOf(this.originOf[later], earlier)) earlier = this.nextOfFace(earlier);
@@ -67,6 +94,8 @@ export class Triangulation extends Subdivision {
 
   /**
    * Adds the triangle above an edge between the two sets.
+   *
+   * @param {number} base
    * @returns {number} its upper edge between them, or -1 if the edge is the upper tangent
    */
   rise(base) {
@@ -84,7 +113,14 @@ export class Triangulation extends Subdivision {
     return usesLater ? this.connect(later, base ^ 1) : this.connect(base ^ 1, earlier ^ 1);
   }
 
-  /** Deletes the edges, from e on in the order `after`, that the triangulation of all lacks. */
+  /**
+   * Deletes the edges, from e on in the order `after`, that the triangulation of all lacks.
+   *
+   * @param {number} base
+   * @param {number} e
+   * @param {Int32Array} after
+   * @returns {number} the first edge that is left
+   */
   candidate(base, e, after) {
     const origin = this.originOf[base];
     const dest = this.destOf(base);
@@ -97,7 +133,11 @@ export class Triangulation extends Subdivision {
     return e;
   }
 
-  /** Removes a vertex that is no corner of the canvas; its neighbours stay triangulated. */
+  /**
+   * Removes a vertex that is no corner of the canvas; its neighbours stay triangulated.
+   *
+   * @param {number} v
+   */
   remove(v) {
     const spokes = this.edgesAround(v);
     // On the border of the canvas, begin behind the face outside.
@@ -109,7 +149,11 @@ export class Triangulation extends Subdivision {
     this.fill(outside >= 0 ? this.connect(lastSide, firstSide) : firstSide);
   }
 
-  /** Triangulates the face on the left of an edge: the triangle at the edge, then what is left. */
+  /**
+   * Triangulates the face on the left of an edge: the triangle at the edge, then what is left.
+   *
+   * @param {number} base
+   */
   fill(base) {
     const afterBase = this.nextOfFace(base);
     const beforeBase = this.prevOfFace(base);
@@ -120,6 +164,7 @@ export class Triangulation extends Subdivision {
     if (fromApex !== beforeBase) this.fill(this.connect(beforeBase, fromApex));
   }
 
+  /** @param {number} base */
   edgeToApex(base) {
     const origin = this.originOf[base];
     const dest = this.destOf(base);

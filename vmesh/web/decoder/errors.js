@@ -16,9 +16,11 @@ const MEANINGS = {
   limit: "the file exceeds a limit of this decoder",
 };
 
+/** @typedef {keyof typeof MEANINGS} ErrorCode */
+
 /** A file that is invalid (`code` of section 12) or that exceeds a limit (`code` "limit"). */
 export class VmeshError extends Error {
-  /** @param {string} code */
+  /** @param {ErrorCode} code */
   constructor(code) {
     super(`${code}: ${MEANINGS[code]}`);
     this.name = "VmeshError";
@@ -28,7 +30,7 @@ export class VmeshError extends Error {
 
 /**
  * @param {boolean} condition
- * @param {string} code of the error that is thrown if the condition does not hold
+ * @param {ErrorCode} code of the error that is thrown if the condition does not hold
  */
 export function check(condition, code) {
   if (!condition) throw new VmeshError(code);

@@ -1,12 +1,8 @@
-/**
- * Flipped triangles: section 8.2 of the specification. A mesh is `origin`, the vertex at which each
- * half-edge starts, and `twin`, the half-edge on the other side or NO_TWIN; triangle t has the
- * half-edges 3 t, 3 t + 1 and 3 t + 2.
- */
+/** Flipped triangles: section 8.2 of the specification. */
 
 import { check } from "./errors.js";
 import { canonicalOrder, cross, nextOf, prevOf } from "./geometry.js";
-import { Contexts } from "./rangecoder.js";
+import { Contexts } from "./range_coder.js";
 import { NO_TWIN } from "./subdivision.js";
 
 const ANGLES = [3, 7, 12, 18, 26, 38, 60];
@@ -36,9 +32,9 @@ const FLIPPED = [
 ];
 
 /**
- * @param {import("./rangecoder.js").RangeDecoder} decoder
+ * @param {import("./range_coder.js").RangeDecoder} decoder
  * @param {Int32Array} points
- * @param {{origin: Int32Array, twin: Int32Array}} mesh the canonical Delaunay triangles; changed
+ * @param {import("./subdivision.js").HalfEdges} mesh the canonical Delaunay triangles; changed
  * @param {Int32Array} luma level of the first component of each vertex
  * @returns {Int32Array} the triangles after the coded flips, in canonical order
  */
@@ -46,7 +42,7 @@ export function readFlips(decoder, points, mesh, luma) {
   decoder.part = "triangles";
   const queue = new EdgeQueue(mesh.twin);
   mesh.twin.forEach((f, e) => e < f && queue.push(e));
-  const contexts = Contexts.preset(FLIPPED.flat(2).map((odds) => 2048 * odds));
+  const contexts = Contexts.preset(FLIPPED.flat(2).map((share) => 2048 * share));
   const nFirst = queue.length;
   let nFlips = 0;
 
@@ -67,6 +63,7 @@ export function readFlips(decoder, points, mesh, luma) {
 
 /** First in, first out; each edge with a twin is in it no more than once. */
 class EdgeQueue {
+  /** @param {Int32Array} twin */
   constructor(twin) {
     this.twin = twin;
     this.ring = new Int32Array(twin.length);
@@ -75,6 +72,7 @@ class EdgeQueue {
     this.length = 0;
   }
 
+  /** @param {number} e */
   push(e) {
     const f = this.twin[e];
     if (f === NO_TWIN || this.isQueued[e] || this.isQueued[f]) return;
@@ -92,7 +90,18 @@ class EdgeQueue {
   }
 }
 
-/** The quad a, b, d, c around an edge b-c with b < c, or null if it is not strictly convex. */
+/**
+ * The quad a, b, d, c around an edge b-c with b < c: half-edge e from b to c, and f back.
+ *
+ * @typedef {{e: number, f: number, a: number, b: number, c: number, d: number}} Quad
+ */
+
+/**
+ * @param {import("./subdivision.js").HalfEdges} mesh
+ * @param {Int32Array} points
+ * @param {number} edge
+ * @returns {Quad | null} the quad around an edge, or null if it is not strictly convex
+ */
 function convexQuadAt({ origin, twin }, points, edge) {
   let e = edge;
   let f = twin[e];
@@ -106,12 +115,23 @@ function convexQuadAt({ origin, twin }, points, edge) {
   return isConvex ? { e, f, a, b, c, d } : null;
 }
 
+/**
+ * @param {Int32Array} points
+ * @param {Quad} quad
+ */
 function angleOf(points, { a, b, c, d }) {
   const cotangents = cotangent(points, a, b, c) + cotangent(points, d, c, b);
   return ANGLES.filter((threshold) => cotangents >= threshold).length;
 }
 
-/** Cotangent of the angle at a of the positive triangle a, b, c in sixteenths, rounded down. */
+/**
+ * Cotangent of the angle at a of the positive triangle a, b, c in sixteenths, rounded down.
+ *
+ * @param {Int32Array} points
+ * @param {number} a
+ * @param {number} b
+ * @param {number} c
+ */
 function cotangent(points, a, b, c) {
   const ax = points[2 * a];
   const ay = points[2 * a + 1];
@@ -121,6 +141,10 @@ function cotangent(points, a, b, c) {
   return Math.floor((16 * dot) / cross(points, a, b, c));
 }
 
+/**
+ * @param {Int32Array} luma
+ * @param {Quad} quad
+ */
 function slopeOf(luma, { a, b, c, d }) {
   const along = Math.abs(luma[b] - luma[c]);
   const across = Math.abs(luma[a] - luma[d]);
@@ -129,6 +153,11 @@ function slopeOf(luma, { a, b, c, d }) {
   return along <= 2 * across ? 3 : 4;
 }
 
+/**
+ * @param {import("./subdivision.js").HalfEdges} mesh
+ * @param {number} e
+ * @param {number} f
+ */
 function flip({ origin, twin }, e, f) {
   const acrossE = twin[prevOf(e)];
   const acrossF = twin[prevOf(f)];
@@ -139,6 +168,11 @@ function flip({ origin, twin }, e, f) {
   pair(twin, prevOf(e), prevOf(f));
 }
 
+/**
+ * @param {Int32Array} twin
+ * @param {number} e
+ * @param {number} f
+ */
 function pair(twin, e, f) {
   twin[e] = f;
   if (f !== NO_TWIN) twin[f] = e;

@@ -3,7 +3,14 @@
  * y of each vertex in turn, as integers of at most 2**19; vertices are named by their numbers.
  */
 
-/** Doubled area of the triangle a, b, c, positive if it turns from x towards y; at most 2**38. */
+/**
+ * Doubled area of the triangle a, b, c, positive if it turns from x towards y; at most 2**38.
+ *
+ * @param {Int32Array} points
+ * @param {number} a
+ * @param {number} b
+ * @param {number} c
+ */
 export function cross(points, a, b, c) {
   const ax = points[2 * a];
   const ay = points[2 * a + 1];
@@ -14,7 +21,15 @@ export function cross(points, a, b, c) {
   return bx * cy - by * cx;
 }
 
-/** A number of the sign of the in-circle determinant of the positive triangle a, b, c and d. */
+/**
+ * A number of the sign of the in-circle determinant of the positive triangle a, b, c and d.
+ *
+ * @param {Int32Array} points
+ * @param {number} a
+ * @param {number} b
+ * @param {number} c
+ * @param {number} d
+ */
 function inCircleSign(points, a, b, c, d) {
   const dx = points[2 * d];
   const dy = points[2 * d + 1];
@@ -36,14 +51,27 @@ function inCircleSign(points, a, b, c, d) {
   const size = aLift * Math.abs(aMinor) + bLift * Math.abs(bMinor) + cLift * Math.abs(cMinor);
   // Three products and two sums are rounded, each by no more than size * 2**-53, if at all.
   if (size < 2 ** 53 || Math.abs(sum) > size * 2 ** -50) return sum;
-  const product = (lift, minor) => BigInt(lift) * BigInt(minor);
   return Number(product(aLift, aMinor) + product(bLift, bMinor) + product(cLift, cMinor));
+}
+
+/**
+ * @param {number} lift
+ * @param {number} minor
+ */
+function product(lift, minor) {
+  return BigInt(lift) * BigInt(minor);
 }
 
 /**
  * Whether d is inside the circle of the positive triangle a, b, c. On the circle the tie rule
  * decides: the four are a convex quad, of which the diagonal at the highest number is kept. So d
  * counts as inside if it is the highest, or if it lies beyond the side opposite to the highest.
+ *
+ * @param {Int32Array} points
+ * @param {number} a
+ * @param {number} b
+ * @param {number} c
+ * @param {number} d
  */
 export function isInCircle(points, a, b, c, d) {
   const sign = inCircleSign(points, a, b, c, d);
@@ -55,12 +83,19 @@ export function isInCircle(points, a, b, c, d) {
   return true;
 }
 
-/** The sides of the canvas that each vertex is on: the sum of 1 left, 2 right, 4 top, 8 bottom. */
+/**
+ * The sides of the canvas that each vertex is on: the sum of 1 left, 2 right, 4 top, 8 bottom.
+ *
+ * @param {Int32Array} points
+ * @param {number} farX
+ * @param {number} farY
+ */
 export function sidesOf(points, farX, farY) {
   return Uint8Array.from({ length: points.length / 2 }, (_, v) => {
     const x = points[2 * v];
     const y = points[2 * v + 1];
-    return (x === 0) + 2 * (x === farX) + 4 * (y === 0) + 8 * (y === farY);
+    const across = (x === 0 ? 1 : 0) + (x === farX ? 2 : 0);
+    return across + (y === 0 ? 4 : 0) + (y === farY ? 8 : 0);
   });
 }
 
@@ -69,12 +104,25 @@ export function isCorner(sides) {
   return (sides & 3) > 0 && (sides & 12) > 0;
 }
 
-/** Numbers of edges, sorted by origin and then by destination. */
+/**
+ * Numbers of edges, sorted by origin and then by destination.
+ *
+ * @param {ArrayLike<number> & Iterable<number>} edges
+ * @param {(e: number) => number} originOf
+ * @param {(e: number) => number} destOf
+ * @param {number} nVertices
+ */
 export function sortedByEnds(edges, originOf, destOf, nVertices) {
   return sortedBy(sortedBy(edges, destOf, nVertices), originOf, nVertices);
 }
 
-/** A counting sort, which keeps the order of those whose keys, below `nKeys`, are the same. */
+/**
+ * A counting sort, which keeps the order of those whose keys, below `nKeys`, are the same.
+ *
+ * @param {ArrayLike<number> & Iterable<number>} edges
+ * @param {(e: number) => number} keyOf
+ * @param {number} nKeys
+ */
 function sortedBy(edges, keyOf, nKeys) {
   const next = new Int32Array(nKeys + 1);
   for (const e of edges) next[keyOf(e) + 1]++;
@@ -84,12 +132,19 @@ function sortedBy(edges, keyOf, nKeys) {
   return sorted;
 }
 
-/** Three vertices for each triangle, by their canonical order, of triangles in any other order. */
+/**
+ * Three vertices for each triangle, by their canonical order, of triangles in any other order.
+ *
+ * @param {Int32Array} origin
+ * @param {number} nVertices
+ */
 export function canonicalOrder(origin, nVertices) {
+  /** @type {number[]} */
   const starts = [];
   origin.forEach((v, e) => {
     if (v < origin[nextOf(e)] && v < origin[prevOf(e)]) starts.push(e);
   });
+  /** @param {number} e */
   const destOf = (e) => origin[nextOf(e)];
   const triangles = new Int32Array(origin.length);
   sortedByEnds(starts, (e) => origin[e], destOf, nVertices).forEach((e, t) => {
@@ -98,11 +153,16 @@ export function canonicalOrder(origin, nVertices) {
   return triangles;
 }
 
-/** The half-edge after e in its triangle: those of triangle t are 3 t, 3 t + 1 and 3 t + 2. */
+/**
+ * The half-edge after e in its triangle: triangle t has the half-edges 3 t, 3 t + 1 and 3 t + 2.
+ *
+ * @param {number} e
+ */
 export function nextOf(e) {
   return e % 3 === 2 ? e - 2 : e + 1;
 }
 
+/** @param {number} e */
 export function prevOf(e) {
   return e % 3 === 0 ? e + 2 : e - 1;
 }

@@ -1,4 +1,8 @@
-/** The order in which colours are coded, from coarse to fine: section 7.2 of the specification. */
+/**
+ * The order in which colours are coded, from coarse to fine (section 7.2 of the specification). It
+ * is that of a Kirkpatrick hierarchy: D. Kirkpatrick, "Optimal search in planar subdivisions", SIAM
+ * Journal on Computing 12(1), 1983.
+ */
 
 import { isCorner } from "./geometry.js";
 
@@ -9,8 +13,9 @@ export const MOST_PARENTS = MOST_TRIANGLES + 1;
 export const NO_PARENT = -1;
 
 /**
- * Thins the triangulation layer by layer. A layer's vertices are no neighbours, so to remove one
- * after the other gives the Delaunay triangulation of those that are left.
+ * Thins the triangulation layer by layer. A layer is an independent set: no two of its vertices are
+ * neighbours, so to remove one after the other gives the Delaunay triangulation of those that are
+ * left.
  *
  * @param {import("./delaunay.js").Triangulation} triangulation is used up: four corners are left
  * @param {Uint8Array} sides of the canvas that each vertex is on
@@ -23,7 +28,7 @@ export function hierarchyOf(triangulation, sides) {
   const isTaken = new Uint8Array(sides.length);
   let left = order.map((_, v) => v);
   while (left.length > 4) {
-    for (const v of left) isTaken[v] = mayBeTaken(triangulation, v, sides, isTaken);
+    for (const v of left) isTaken[v] = mayBeTaken(triangulation, v, sides, isTaken) ? 1 : 0;
     const layer = left.filter((v) => isTaken[v]);
     // The layer that is taken first comes last.
     order.set(layer, left.length - layer.length);
@@ -38,7 +43,14 @@ export function hierarchyOf(triangulation, sides) {
   return { order, parents };
 }
 
-/** Whether a vertex has few enough triangles, and no neighbour of it has been taken. */
+/**
+ * Whether a vertex has few enough triangles, and no neighbour of it has been taken.
+ *
+ * @param {import("./delaunay.js").Triangulation} triangulation
+ * @param {number} v
+ * @param {Uint8Array} sides
+ * @param {Uint8Array} isTaken
+ */
 function mayBeTaken(triangulation, v, sides, isTaken) {
   if (isCorner(sides[v])) return false;
   const neighbours = triangulation.neighboursOf(v);

@@ -10,3 +10,5 @@ export const DEFAULT_LIMITS = Object.freeze({
   /** Sum over all triangles of the rows of pixels that each one spans. */
   triangleRows: 2 ** 26,
 });
+
+/** @typedef {typeof DEFAULT_LIMITS} Limits */

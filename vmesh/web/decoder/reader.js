@@ -8,6 +8,7 @@ const CRC_TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
   return crc;
 });
 
+/** @param {Uint8Array} bytes */
 function crc32(bytes) {
   let crc = 0xffffffff;
   for (const byte of bytes) crc = CRC_TABLE[(crc ^ byte) & 255] ^ (crc >>> 8);
@@ -18,7 +19,7 @@ function crc32(bytes) {
 export class Reader {
   /**
    * @param {Uint8Array} bytes
-   * @param {string} short code of the error if they end too early
+   * @param {import("./errors.js").ErrorCode} short code of the error if they end too early
    */
   constructor(bytes, short) {
     this.bytes = bytes;
@@ -30,6 +31,7 @@ export class Reader {
     return this.position === this.bytes.length;
   }
 
+  /** @param {number} length */
   take(length) {
     const end = this.position + length;
     check(end <= this.bytes.length, this.short);
@@ -46,7 +48,11 @@ export class Reader {
     return this.take(1)[0];
   }
 
-  /** A number below 2**31 in its shortest form; `code` is the error of any other. */
+  /**
+   * A number below 2**31 in its shortest form.
+   *
+   * @param {import("./errors.js").ErrorCode} code of the error of any other
+   */
   varint(code) {
     let number = 0;
     for (let i = 0; i < 5; i++) {
@@ -60,7 +66,11 @@ export class Reader {
     throw new VmeshError(code);
   }
 
-  /** Reads the CRC-32 of the bytes from `start` to here. */
+  /**
+   * Reads the CRC-32 of the bytes from a place to here.
+   *
+   * @param {number} start
+   */
   checksum(start) {
     const covered = this.bytes.subarray(start, this.position);
     const [b0, b1, b2, b3] = this.take(4);

@@ -5,25 +5,40 @@ import { cross } from "./geometry.js";
 import { DEFAULT_LIMITS } from "./limits.js";
 
 /**
+ * A raster.
+ *
+ * @typedef {object} Picture
+ * @property {number} width
+ * @property {number} height
+ * @property {number} components
+ * @property {number} depth bits of a sample
+ * @property {Uint8Array | Uint16Array} data the samples of each pixel, row by row: grey, or RGB, or
+ *   RGB and alpha (not multiplied); those of more than 8 bits are 16 bits wide
+ */
+
+/**
  * @param {import("./vmesh.js").Mesh} mesh
- * @param {{pixels?: number, triangleRows?: number}} [limits] see DEFAULT_LIMITS
- * @returns {{width: number, height: number, components: number, depth: number,
- *   data: Uint8Array | Uint16Array}} `data` holds the samples of each pixel, row by row: grey, or
- *   RGB, or RGB and alpha (not multiplied); those of more than 8 bits are 16 bits wide
+ * @param {Partial<Pick<import("./limits.js").Limits, "pixels" | "triangleRows">>} [limits]
+ * @returns {Picture}
  */
 export function render(mesh, limits = {}) {
   const { pixels, triangleRows } = { ...DEFAULT_LIMITS, ...limits };
-  const { width, height, depth, samples, triangles } = mesh;
+  const { width, height, depth, triangles } = mesh;
   const components = mesh.steps.length;
   check(width * height <= pixels, "limit");
   check(countRows(mesh) <= triangleRows, "limit");
-  const data = new samples.constructor(width * height * components);
+  const length = width * height * components;
+  const data = depth === 8 ? new Uint8Array(length) : new Uint16Array(length);
   const rasterizer = new Rasterizer(mesh, data);
   for (let at = 0; at < triangles.length; at += 3) rasterizer.draw(at);
   return { width, height, components, depth, data };
 }
 
-/** The rows of all triangles: without the pixels, the work of rendering. */
+/**
+ * The rows of all triangles: without the pixels, the work of rendering.
+ *
+ * @param {import("./vmesh.js").Mesh} mesh
+ */
 function countRows(mesh) {
   let count = 0;
   for (let at = 0; at < mesh.triangles.length; at += 3) {
@@ -33,7 +48,12 @@ function countRows(mesh) {
   return count;
 }
 
-/** The first and the last row whose pixel centres are within the height of a triangle. */
+/**
+ * The first and the last row whose pixel centres are within the height of a triangle.
+ *
+ * @param {import("./vmesh.js").Mesh} mesh
+ * @param {number} at place of the triangle's first corner
+ */
 function rowsOf({ vertices, triangles, subdivision, height }, at) {
   const pixel = 1 << subdivision;
   const y0 = vertices[2 * triangles[at] + 1];
@@ -51,6 +71,10 @@ function rowsOf({ vertices, triangles, subdivision, height }, at) {
  * perRow[i] * y`.
  */
 class Rasterizer {
+  /**
+   * @param {import("./vmesh.js").Mesh} mesh
+   * @param {Uint8Array | Uint16Array} data
+   */
   constructor(mesh, data) {
     this.mesh = mesh;
     this.mostDet = 2 ** (52 - mesh.depth);
@@ -83,7 +107,13 @@ class Rasterizer {
     }
   }
 
-  /** Prepares the weight i, of the side from vertex u to v. */
+  /**
+   * Prepares the weight i, of the side from vertex u to v.
+   *
+   * @param {number} i
+   * @param {number} u
+   * @param {number} v
+   */
   setSide(i, u, v) {
     const { vertices } = this.mesh;
     const ux = 2 * vertices[2 * u];
@@ -97,6 +127,11 @@ class Rasterizer {
     this.least[i] = dy < 0 || (dy === 0 && dx > 0) ? 0 : 1;
   }
 
+  /**
+   * @param {number} at place of the triangle's first corner
+   * @param {number} det
+   * @param {number} y
+   */
   drawRow(at, det, y) {
     const { atRow, perColumn, least } = this;
     let start = 0;
@@ -113,6 +148,12 @@ class Rasterizer {
   /**
    * Interpolates the samples of the pixels from `start` to `end` in a row. Numerators are below
    * det * 2**(depth + 1). Up to 2**53 they are exact, and so is the floor of a quotient.
+   *
+   * @param {number} at place of the triangle's first corner
+   * @param {number} det
+   * @param {number} y
+   * @param {number} start
+   * @param {number} end
    */
   fill(at, det, y, start, end) {
     const { components, data, perColumn, weights, mostDet } = this;
@@ -140,6 +181,12 @@ class Rasterizer {
   /**
    * Sums the upper and the lower bytes of the samples apart: both sums are at most 255 * 2**40, and
    * with the remainder of the upper one, which is below det, all numbers stay below 2**51.
+   *
+   * @param {number[]} corners samples of one component
+   * @param {number} det
+   * @param {number} place in the data
+   * @param {number} start
+   * @param {number} end
    */
   fillInParts(corners, det, place, start, end) {
     for (let x = start; x <= end; x++) {

@@ -6,6 +6,14 @@ import { cross, sortedByEnds } from "./geometry.js";
 export const NO_TWIN = -1;
 
 /**
+ * Triangle t has the half-edges 3 t, 3 t + 1 and 3 t + 2.
+ *
+ * @typedef {object} HalfEdges
+ * @property {Int32Array} origin the vertex at which each half-edge starts
+ * @property {Int32Array} twin the half-edge on the other side, or NO_TWIN
+ */
+
+/**
  * Directed edges around their origins: edge e and its reverse e ^ 1 are next to each other in the
  * tables. "Next" is in the direction of the positive turn.
  */
@@ -15,6 +23,7 @@ export class Subdivision {
     const nVertices = points.length / 2;
     this.points = points;
     this.nEdges = 0;
+    /** @type {number[]} */
     this.freeEdges = [];
     this.originOf = new Int32Array(6 * nVertices);
     this.nextAround = new Int32Array(6 * nVertices);
@@ -23,43 +32,68 @@ export class Subdivision {
     this.edgeFrom = new Int32Array(nVertices);
   }
 
+  /** @param {number} e */
   destOf(e) {
     return this.originOf[e ^ 1];
   }
 
-  /** The edge after e around the face on its left. */
+  /**
+   * The edge after e around the face on its left.
+   *
+   * @param {number} e
+   */
   nextOfFace(e) {
     return this.prevAround[e ^ 1];
   }
 
-  /** The edge before e around the face on its left. */
+  /**
+   * The edge before e around the face on its left.
+   *
+   * @param {number} e
+   */
   prevOfFace(e) {
     return this.nextAround[e] ^ 1;
   }
 
+  /**
+   * @param {number} v
+   * @param {number} e
+   */
   isLeftOf(v, e) {
     return cross(this.points, v, this.originOf[e], this.destOf(e)) > 0;
   }
 
+  /**
+   * @param {number} v
+   * @param {number} e
+   */
   isRightOf(v, e) {
     return cross(this.points, v, this.destOf(e), this.originOf[e]) > 0;
   }
 
-  /** Whether the face on the left of e is a triangle; the face outside the canvas is not. */
+  /**
+   * Whether the face on the left of e is a triangle; the face outside the canvas is not.
+   *
+   * @param {number} e
+   */
   hasTriangle(e) {
     const after = this.nextAround[e];
     return cross(this.points, this.originOf[e], this.destOf(e), this.destOf(after)) > 0;
   }
 
-  /** The triangles of a canvas with all its corners, in canonical order, as in flips.js. */
+  /**
+   * The triangles of a canvas with all its corners, in canonical order.
+   *
+   * @returns {HalfEdges}
+   */
   halfEdges() {
     const starts = [];
     for (let e = 0; e < this.nEdges; e++) {
       const [a, b, c] = [this.originOf[e], this.destOf(e), this.destOf(this.nextAround[e])];
       if (a < b && a < c && this.hasTriangle(e)) starts.push(e);
     }
-    const [originOf, destOf] = [(e) => this.originOf[e], (e) => this.destOf(e)];
-    const sorted = sortedByEnds(starts, originOf, destOf, this.points.length / 2);
+    const nVertices = this.points.length / 2;
+    const sorted = sortedByEnds(starts, (e) => this.originOf[e], (e) => this.destOf(e), nVertices);
     const origin = new Int32Array(3 * sorted.length);
     const twin = new Int32Array(3 * sorted.length);
     const numberOf = new Int32Array(this.nEdges).fill(NO_TWIN);
@@ -76,7 +110,11 @@ export class Subdivision {
     return { origin, twin };
   }
 
-  /** The edges that start at a vertex, in the direction of the positive turn. */
+  /**
+   * The edges that start at a vertex, in the direction of the positive turn.
+   *
+   * @param {number} v
+   */
   edgesAround(v) {
     const edges = [];
     let e = this.edgeFrom[v];
@@ -87,10 +125,15 @@ export class Subdivision {
     return edges;
   }
 
+  /** @param {number} v */
   neighboursOf(v) {
     return this.edgesAround(v).map((e) => this.destOf(e));
   }
 
+  /**
+   * @param {number} origin
+   * @param {number} dest
+   */
   makeEdge(origin, dest) {
     let e = this.freeEdges.pop();
     if (e === undefined) {
@@ -102,6 +145,10 @@ export class Subdivision {
     return e;
   }
 
+  /**
+   * @param {number} e
+   * @param {number} origin
+   */
   addEnd(e, origin) {
     this.originOf[e] = origin;
     this.nextAround[e] = e;
@@ -109,7 +156,12 @@ export class Subdivision {
     this.edgeFrom[origin] = e;
   }
 
-  /** Joins the rings of edges around two origins, or divides one ring in two. */
+  /**
+   * Joins the rings of edges around two origins, or divides one ring in two.
+   *
+   * @param {number} e
+   * @param {number} f
+   */
   splice(e, f) {
     const afterE = this.nextAround[e];
     const afterF = this.nextAround[f];
@@ -119,7 +171,12 @@ export class Subdivision {
     this.prevAround[afterE] = f;
   }
 
-  /** A new edge from the end of e to the origin of f, which have the same face on their left. */
+  /**
+   * A new edge from the end of e to the origin of f, which have the same face on their left.
+   *
+   * @param {number} e
+   * @param {number} f
+   */
   connect(e, f) {
     const made = this.makeEdge(this.destOf(e), this.originOf[f]);
     this.splice(made, this.nextOfFace(e));
@@ -127,6 +184,7 @@ export class Subdivision {
     return made;
   }
 
+  /** @param {number} e */
   deleteEdge(e) {
     this.removeEnd(e);
     this.removeEnd(e ^ 1);
@@ -135,6 +193,7 @@ export class Subdivision {
     this.freeEdges.push(e & ~1);
   }
 
+  /** @param {number} e */
   removeEnd(e) {
     this.edgeFrom[this.originOf[e]] = this.nextAround[e];
     this.splice(e, this.prevAround[e]);

@@ -4,10 +4,16 @@ import { check } from "./errors.js";
 import { canonicalOrder, sortedByEnds } from "./geometry.js";
 
 /**
+ * What is decoded of a file, or of a tile of it; see Mesh.
+ *
+ * @typedef {{vertices: Int32Array, levels: Int32Array, triangles: Int32Array}} CodedMesh
+ */
+
+/**
  * @param {import("./container.js").Header} header of the file
  * @param {import("./container.js").Part[]} tiles
- * @param {{vertices: Int32Array, levels: Int32Array, triangles: Int32Array}[]} meshes of the tiles
- * @returns {{vertices: Int32Array, levels: Int32Array, triangles: Int32Array}}
+ * @param {CodedMesh[]} meshes of the tiles
+ * @returns {CodedMesh}
  */
 export function joinTiles(header, tiles, meshes) {
   const { farX, farY, nVertices } = header;
@@ -17,7 +23,9 @@ export function joinTiles(header, tiles, meshes) {
   const vertices = new Int32Array(2 * nVertices);
   const levels = new Int32Array(nComponents * nVertices);
   const numberOf = new Int32Array(nPlaced);
+  /** @param {number} i */
   const xOf = (i) => all.vertices[2 * i];
+  /** @param {number} i */
   const yOf = (i) => all.vertices[2 * i + 1];
   const order = sortedByEnds(numberOf.map((_, i) => i), yOf, xOf, Math.max(farX, farY) + 1);
 
@@ -43,8 +51,16 @@ export function joinTiles(header, tiles, meshes) {
   return { vertices, levels, triangles: canonicalOrder(triangles, nVertices) };
 }
 
-/** The meshes of all tiles one after the other, at their places and with their own vertices. */
+/**
+ * The meshes of all tiles one after the other, at their places and with their own vertices.
+ *
+ * @param {import("./container.js").Part[]} tiles
+ * @param {CodedMesh[]} meshes
+ * @param {number} nComponents
+ * @returns {CodedMesh}
+ */
 function placed(tiles, meshes, nComponents) {
+  /** @param {keyof CodedMesh} name */
   const total = (name) => meshes.reduce((sum, mesh) => sum + mesh[name].length, 0);
   const vertices = new Int32Array(total("vertices"));
   const levels = new Int32Array(total("levels"));
@@ -62,11 +78,23 @@ function placed(tiles, meshes, nComponents) {
   return { vertices, levels, triangles };
 }
 
-/** How many tiles of a side have a coordinate within them or on their border. */
+/**
+ * How many tiles of a side have a coordinate within them or on their border.
+ *
+ * @param {number} coordinate
+ * @param {number} side
+ * @param {number} far the largest coordinate
+ */
 function countAt(coordinate, side, far) {
   return coordinate % side === 0 && coordinate > 0 && coordinate < far ? 2 : 1;
 }
 
+/**
+ * @param {Int32Array} array
+ * @param {number} row
+ * @param {number} other
+ * @param {number} length of a row
+ */
 function isSameRow(array, row, other, length) {
   for (let i = 0; i < length; i++) {
     if (array[row * length + i] !== array[other * length + i]) return false;
@@ -74,6 +102,13 @@ function isSameRow(array, row, other, length) {
   return true;
 }
 
+/**
+ * @param {Int32Array} from
+ * @param {number} row
+ * @param {Int32Array} to
+ * @param {number} other
+ * @param {number} length of a row
+ */
 function copyRow(from, row, to, other, length) {
   for (let i = 0; i < length; i++) to[other * length + i] = from[row * length + i];
 }

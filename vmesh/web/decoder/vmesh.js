@@ -5,16 +5,17 @@
 
 import { readLevels, samplesOf } from "./colors.js";
 import { readFile } from "./container.js";
+import { checkCoverage } from "./coverage.js";
 import { Triangulation } from "./delaunay.js";
 import { VmeshError, check } from "./errors.js";
 import { readFlips } from "./flips.js";
 import { isCorner, sidesOf } from "./geometry.js";
 import { DEFAULT_LIMITS } from "./limits.js";
-import { checkGeometry, readTriangles } from "./list.js";
 import { readPositions } from "./positions.js";
-import { RangeDecoder } from "./rangecoder.js";
+import { RangeDecoder } from "./range_coder.js";
 import { render } from "./render.js";
 import { joinTiles } from "./tiles.js";
+import { readTriangles } from "./triangle_list.js";
 
 export { DEFAULT_LIMITS, VmeshError, render };
 
@@ -34,7 +35,7 @@ const FLIPPED = 2;
  * @property {Int32Array} levels c n: as stored
  * @property {Uint8Array | Uint16Array} samples c n: grey, or RGB, or RGB and alpha (not multiplied)
  * @property {Int32Array} triangles 3 m: vertex numbers, in canonical order
- * @property {{tag: string, content: Uint8Array}[]} chunks all but the mesh, as they are stored. The
+ * @property {import("./container.js").Chunk[]} chunks all but the mesh, as they are stored. The
  *   contents of `i` (an ICC profile), `e` (EXIF), `x` (XMP) are zlib streams, not looked at:
  *   `DecompressionStream("deflate")` inflates them; whoever does so should bound the length
  */
@@ -43,7 +44,7 @@ const FLIPPED = 2;
  * Decodes a file.
  *
  * @param {Uint8Array} bytes
- * @param {Partial<typeof DEFAULT_LIMITS>} [limits]
+ * @param {Partial<import("./limits.js").Limits>} [limits]
  * @returns {Mesh}
  * @throws {VmeshError} if the file is invalid or exceeds a limit
  */
@@ -56,7 +57,13 @@ export function decode(bytes, limits = {}) {
   return { width, height, subdivision, depth, steps, ...mesh, samples, chunks };
 }
 
-/** Decodes the mesh of a file or of a tile. */
+/**
+ * Decodes the mesh of a file or of a tile.
+ *
+ * @param {import("./container.js").Header} header
+ * @param {RangeDecoder} decoder
+ * @returns {import("./tiles.js").CodedMesh}
+ */
 function readMesh(header, decoder) {
   const { connectivity, nVertices, farX, farY, steps } = header;
   const vertices = readPositions(decoder, nVertices, farX + 1, farY + 1);
@@ -68,7 +75,7 @@ function readMesh(header, decoder) {
   let triangles = halfEdges.origin;
   if (connectivity === LISTED) {
     triangles = readTriangles(decoder, sides);
-    checkGeometry(vertices, triangles, sides, 2 * farX * farY);
+    checkCoverage(vertices, triangles, sides, 2 * farX * farY);
   }
   if (connectivity === FLIPPED) {
     const luma = levels.filter((_, i) => i % steps.length === 0);

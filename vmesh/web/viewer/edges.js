@@ -1,8 +1,17 @@
 /** The edges of a mesh. */
 
-/** Both ends of each edge; inner edges have two directions, of which one is taken. */
+/**
+ * Both ends of each edge; inner edges have two directions, of which one is taken.
+ *
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
+ */
 export function endsOf({ vertices, triangles }) {
   const ends = [];
+  /**
+   * @param {number} a
+   * @param {number} b
+   * @param {number} axis
+   */
   const isUpright = (a, b, axis) => vertices[2 * a + axis] === vertices[2 * b + axis];
   for (let at = 0; at < triangles.length; at += 3) {
     for (let i = 0; i < 3; i++) {

@@ -6,13 +6,22 @@
  */
 
 import { decode } from "../decoder/vmesh.js";
-import { paintWhole } from "./sharedpainter.js";
+import { paintWhole } from "./shared_painter.js";
 
 class VmeshImage extends HTMLElement {
   static observedAttributes = ["src", "alt"];
 
   constructor() {
     super();
+    /** @type {import("../decoder/vmesh.js").Mesh | null} */
+    this.mesh = null;
+    /**
+     * What is shown, or was to be.
+     *
+     * @type {string | null}
+     */
+    this.source = null;
+    this.failed = false;
     this.internals = this.attachInternals();
     const root = this.attachShadow({ mode: "open" });
     this.sheet = document.createElement("style");
@@ -52,6 +61,7 @@ class VmeshImage extends HTMLElement {
     this.sight.disconnect();
   }
 
+  /** @param {string} name */
   attributeChangedCallback(name) {
     this.internals.role = this.alt === "" ? "presentation" : "img";
     this.internals.ariaLabel = this.alt;
@@ -77,10 +87,11 @@ class VmeshImage extends HTMLElement {
       const bytes = new Uint8Array(await response.arrayBuffer());
       if (source === this.source) this.show(decode(bytes));
     } catch (error) {
-      if (source === this.source) this.fail(error);
+      if (source === this.source) this.fail(/** @type {Error} */ (error));
     }
   }
 
+  /** @param {import("../decoder/vmesh.js").Mesh} mesh */
   show(mesh) {
     this.mesh = mesh;
     this.failed = false;
@@ -90,7 +101,11 @@ class VmeshImage extends HTMLElement {
     this.dispatchEvent(new Event("load"));
   }
 
-  /** Shows the alternative text; the event says what was wrong. */
+  /**
+   * Shows the alternative text; the event says what was wrong.
+   *
+   * @param {Error} error
+   */
   fail(error) {
     this.mesh = null;
     this.failed = true;
@@ -99,7 +114,11 @@ class VmeshImage extends HTMLElement {
     this.dispatchEvent(new ErrorEvent("error", { message: error.message, error }));
   }
 
-  /** The page's own rules for the element come before these. */
+  /**
+   * The page's own rules for the element come before these.
+   *
+   * @param {string} size
+   */
   setSheet(size) {
     this.sheet.textContent = `:host { display: inline-block; ${size} }
 canvas { display: ${this.mesh ? "block" : "none"}; width: 100%; height: 100%;
@@ -113,11 +132,18 @@ canvas { display: ${this.mesh ? "block" : "none"}; width: 100%; height: 100%;
   }
 }
 
-/** Columns and rows for the picture, one for each pixel of the device where it is shown. */
+/**
+ * Columns and rows for the picture, one for each pixel of the device where it is shown.
+ *
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
+ * @param {Element} element
+ * @param {string} fit
+ */
 function sizeFor({ width, height }, { clientWidth, clientHeight }, fit) {
   const [x, y] = [clientWidth / width, clientHeight / height];
   const contained = Math.min(x, y);
   const isNative = fit === "none" || (fit === "scale-down" && contained >= 1);
+  /** @type {Record<string, number[]>} */
   const scales = { fill: [x, y], cover: [Math.max(x, y), Math.max(x, y)] };
   if (isNative) return [width, height];
   return (scales[fit] ?? [contained, contained]).map((scale, axis) => {

@@ -24,7 +24,12 @@ export function drawEnlarged({ vertices, triangles, samples, steps, depth }, pla
   }
 }
 
-/** Where a frame shows the vertices: x and y of each. */
+/**
+ * Where a frame shows the vertices: x and y of each.
+ *
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
+ * @param {import("./view.js").Frame} frame
+ */
 export function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY }) {
   const unit = 2 ** subdivision;
   const places = new Float64Array(vertices.length);
@@ -35,6 +40,12 @@ export function placesOf({ vertices, subdivision }, { left, top, scaleX, scaleY 
   return places;
 }
 
+/**
+ * @param {number[]} corners
+ * @param {Float64Array} places
+ * @param {Float64Array} colors red, green, blue and alpha of each vertex
+ * @param {ImageData} image
+ */
 function drawTriangle(corners, places, colors, image) {
   const [a, b, c] = corners.map((v) => [places[2 * v], places[2 * v + 1]]);
   const first = firstCentre(Math.min(a[1], b[1], c[1]), image.height);
@@ -58,12 +69,23 @@ function drawTriangle(corners, places, colors, image) {
   }
 }
 
-/** The first pixel of so many whose centre is not before a place; their number if there is none. */
+/**
+ * The first pixel of so many whose centre is not before a place; their number if there is none.
+ *
+ * @param {number} place
+ * @param {number} count
+ */
 function firstCentre(place, count) {
   return Math.min(Math.max(Math.ceil(place - 0.5), 0), count);
 }
 
-/** Where the side from u to v crosses a row, or null where it does not; its upper end is on it. */
+/**
+ * Where the side from u to v crosses a row, or null where it does not; its upper end is on it.
+ *
+ * @param {number[]} u
+ * @param {number[]} v
+ * @param {number} y
+ */
 function crossing(u, v, y) {
   const [upper, lower] = u[1] < v[1] ? [u, v] : [v, u];
   if (y < upper[1] || y >= lower[1]) return null;
@@ -71,11 +93,25 @@ function crossing(u, v, y) {
   return upper[0] + share * (lower[0] - upper[0]);
 }
 
+/**
+ * A component as a function of the place.
+ *
+ * @typedef {{perColumn: number, perRow: number, atOrigin: number}} Plane
+ */
+
+/**
+ * @param {Plane[]} planes of red, green, blue and alpha
+ * @param {number} y
+ * @param {number} start
+ * @param {number} end
+ * @param {ImageData} image
+ */
 function fillRow(planes, y, start, end, { data, width }) {
   planes.forEach(({ perColumn, perRow, atOrigin }, i) => {
     const atRow = atOrigin + perRow * (y + 0.5);
     for (let x = start; x < end; x++) {
-      data[4 * (y * width + x) + i] = atRow + perColumn * (x + 0.5); // which is rounded, and clamped
+      // Which is rounded, and clamped.
+      data[4 * (y * width + x) + i] = atRow + perColumn * (x + 0.5);
     }
   });
 }

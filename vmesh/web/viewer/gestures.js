@@ -3,6 +3,8 @@
 const KEY_STEP = 64; // pixels of the page
 const KEY_FACTOR = 1.25;
 
+/** @typedef {[number, number]} Place */
+
 /**
  * @param {HTMLElement} stage
  * @param {import("./view.js").View} view
@@ -28,9 +30,15 @@ export function listenToGestures(stage, view, changed) {
   });
 }
 
-/** Changes the view as a key says; whether it says anything. */
+/**
+ * Changes the view as a key says; whether it says anything.
+ *
+ * @param {import("./view.js").View} view
+ * @param {string} key
+ */
 function act(view, key) {
   const step = KEY_STEP * devicePixelRatio;
+  /** @type {Record<string, number[]>} */
   const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
   if (key in moves) view.pan(moves[key][0] * step, moves[key][1] * step);
   else if (key === "+" || key === "=") view.zoomAt(KEY_FACTOR, view.columns / 2, view.rows / 2);
@@ -41,8 +49,15 @@ function act(view, key) {
   return true;
 }
 
-/** One pointer moves the picture; two also zoom by their distance. */
+/**
+ * One pointer moves the picture; two also zoom by their distance.
+ *
+ * @param {HTMLElement} stage
+ * @param {import("./view.js").View} view
+ * @param {() => void} changed
+ */
 function listenToPointers(stage, view, changed) {
+  /** @type {Map<number, Place>} */
   const places = new Map();
   stage.addEventListener("pointerdown", (event) => {
     stage.setPointerCapture(event.pointerId);
@@ -57,18 +72,28 @@ function listenToPointers(stage, view, changed) {
     if (before.length > 0) view.zoomAt(after.length / before.length, after.x, after.y);
     changed();
   });
-  for (const type of ["pointerup", "pointercancel"]) {
+  for (const type of /** @type {const} */ (["pointerup", "pointercancel"])) {
     stage.addEventListener(type, (event) => places.delete(event.pointerId));
   }
 }
 
-/** The middle of the first two places, and the distance between them; 0 of a single one. */
+/**
+ * The middle of the first two places, and the distance between them; 0 of a single one.
+ *
+ * @param {Place[]} places
+ */
 function spanOf([first, second = first]) {
   const [dx, dy] = [second[0] - first[0], second[1] - first[1]];
   return { x: first[0] + dx / 2, y: first[1] + dy / 2, length: Math.hypot(dx, dy) };
 }
 
-/** Where an event is on the stage, in pixels of the device. */
+/**
+ * Where an event is on the stage, in pixels of the device.
+ *
+ * @param {HTMLElement} stage
+ * @param {MouseEvent} event
+ * @returns {Place}
+ */
 function placeOf(stage, event) {
   const box = stage.getBoundingClientRect();
   return [

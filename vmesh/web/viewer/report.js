@@ -1,32 +1,39 @@
 /** A report: meshes beside their photographs, with a divider to drag. */
 
 import { decode } from "../decoder/vmesh.js";
+import { elementIn } from "./dom.js";
 import { bytesIn } from "./embedded.js";
-import { paintWhole } from "./sharedpainter.js";
+import { paintWhole } from "./shared_painter.js";
 
 class Comparison {
+  /** @param {Element} section */
   constructor(section) {
-    this.stage = section.querySelector(".stage");
-    this.canvas = section.querySelector("canvas");
+    this.stage = elementIn(section, ".stage", HTMLElement);
+    this.canvas = elementIn(section, "canvas", HTMLCanvasElement);
     this.photographColumns = this.canvas.width;
     this.wireframe = false;
-    this.mesh = decode(bytesIn(section.querySelector("script")));
-    const divider = section.querySelector("input");
+    this.mesh = decode(bytesIn(elementIn(section, "script", HTMLElement)));
+    const divider = elementIn(section, "input", HTMLInputElement);
     divider.addEventListener("input", () => this.divide(divider.value));
-    const button = section.querySelector("button");
+    const button = elementIn(section, "button", HTMLElement);
     button.addEventListener("click", () => this.toggle(button));
     new ResizeObserver(() => this.draw()).observe(this.stage);
     this.divide(divider.value); // where the browser kept it when the page was loaded again
   }
 
-  /** Shows the photograph on the left of a place, in percent, and the mesh on the right of it. */
+  /**
+   * Shows the photograph on the left of a place, in percent, and the mesh on the right of it.
+   *
+   * @param {string} place
+   */
   divide(place) {
     this.stage.style.setProperty("--place", `${place}%`);
   }
 
+  /** @param {HTMLElement} button */
   toggle(button) {
     this.wireframe = !this.wireframe;
-    button.setAttribute("aria-pressed", this.wireframe);
+    button.setAttribute("aria-pressed", String(this.wireframe));
     this.draw();
   }
 

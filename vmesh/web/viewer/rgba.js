@@ -1,12 +1,13 @@
 /** Samples as red, green, blue and alpha. */
 
 /**
- * @param {number[]} target an array with room for four numbers a colour, which it gets
+ * @template {Float64Array | Uint8ClampedArray} T
+ * @param {T} target gets four numbers a colour
  * @param {Uint8Array | Uint16Array} samples grey, RGB, or RGB and alpha of each
  * @param {number} components
  * @param {number} depth bits of a sample
  * @param {number} largest what the largest sample becomes, and alpha where there is none
- * @returns the target
+ * @returns {T} the target
  */
 export function fillRgba(target, samples, components, depth, largest) {
   const gain = largest / (2 ** depth - 1);

@@ -2,6 +2,18 @@
 
 const MOST_SCALE = 64;
 
+/**
+ * Where a painter shows the picture, in pixels of the device.
+ *
+ * @typedef {object} Frame
+ * @property {number} columns of the canvas
+ * @property {number} rows
+ * @property {number} left side of the picture
+ * @property {number} top
+ * @property {number} scaleX pixels of the device for each of the picture
+ * @property {number} scaleY
+ */
+
 export class View {
   constructor() {
     /** The picture, in its pixels. */
@@ -19,12 +31,20 @@ export class View {
     this.isFitted = true;
   }
 
+  /**
+   * @param {number} width
+   * @param {number} height
+   */
   setPicture(width, height) {
     this.width = width;
     this.height = height;
     this.fit();
   }
 
+  /**
+   * @param {number} columns
+   * @param {number} rows
+   */
   setStage(columns, rows) {
     this.columns = columns;
     this.rows = rows;
@@ -41,6 +61,7 @@ export class View {
     this.isFitted = true;
   }
 
+  /** @param {number} scale */
   center(scale) {
     this.scale = scale;
     this.x = this.width / 2;
@@ -48,7 +69,13 @@ export class View {
     this.isFitted = false;
   }
 
-  /** Enlarges by a factor; the picture stays where it is at a place of the stage. */
+  /**
+   * Enlarges by a factor; the picture stays where it is at a place of the stage.
+   *
+   * @param {number} factor
+   * @param {number} column
+   * @param {number} row
+   */
   zoomAt(factor, column, row) {
     const least = Math.min(this.fittedScale, 1) / 4;
     const most = Math.max(this.fittedScale, MOST_SCALE);
@@ -58,14 +85,23 @@ export class View {
     this.pan((column - this.columns / 2) * gain * scale, (row - this.rows / 2) * gain * scale);
   }
 
-  /** Moves the stage over the picture by pixels of the device. */
+  /**
+   * Moves the stage over the picture by pixels of the device.
+   *
+   * @param {number} columns
+   * @param {number} rows
+   */
   pan(columns, rows) {
     this.x = clamp(this.x + columns / this.scale, 0, this.width);
     this.y = clamp(this.y + rows / this.scale, 0, this.height);
     this.isFitted = false;
   }
 
-  /** What a painter needs; the picture starts at a whole pixel of the device. */
+  /**
+   * The picture starts at a whole pixel of the device.
+   *
+   * @returns {Frame}
+   */
   get frame() {
     const { columns, rows, scale } = this;
     const left = Math.round(columns / 2 - this.x * scale);
@@ -74,6 +110,11 @@ export class View {
   }
 }
 
+/**
+ * @param {number} value
+ * @param {number} least
+ * @param {number} most
+ */
 function clamp(value, least, most) {
   return Math.min(Math.max(value, least), most);
 }

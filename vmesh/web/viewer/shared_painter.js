@@ -1,9 +1,11 @@
 /** One painter for many canvases of a page: browsers keep no more than 16 WebGL contexts. */
 
+import { contextOf } from "./dom.js";
 import { painterFor } from "./painter.js";
 
 const MOST_SIDE = 8192; // of a canvas
 
+/** @type {ReturnType<typeof painterFor> | undefined} */
 let painter;
 
 /**
@@ -11,7 +13,9 @@ let painter;
  *
  * @param {import("../decoder/vmesh.js").Mesh} mesh
  * @param {HTMLCanvasElement} canvas
- * @param {object} [marks] as a painter's `draw` takes them
+ * @param {number} columns
+ * @param {number} rows
+ * @param {import("./painter.js").Marks} [marks]
  */
 export function paintWhole(mesh, canvas, columns, rows, marks) {
   const shrink = Math.min(1, MOST_SIDE / Math.max(columns, rows));
@@ -22,5 +26,5 @@ export function paintWhole(mesh, canvas, columns, rows, marks) {
   painter.setMesh(mesh);
   const [scaleX, scaleY] = [columns / mesh.width, rows / mesh.height];
   painter.draw({ columns, rows, left: 0, top: 0, scaleX, scaleY }, marks);
-  canvas.getContext("2d").drawImage(painter.canvas, 0, 0);
+  contextOf(canvas).drawImage(painter.canvas, 0, 0);
 }

@@ -9,10 +9,14 @@ const MOST_SEEN = 250;
 const SEEN_AT_START = 16;
 const BYTES_AHEAD = 4;
 
-/** A table of contexts: for each, the odds of a 1 in units of 2**-16 and how many bits it saw. */
+/** A table of contexts: the probability of a 1 in units of 2**-16, and how many bits each saw. */
 export class Contexts {
-  constructor(odds, seen) {
-    this.odds = odds;
+  /**
+   * @param {Uint16Array} probabilities
+   * @param {Uint8Array} seen
+   */
+  constructor(probabilities, seen) {
+    this.probabilities = probabilities;
     this.seen = seen;
   }
 
@@ -21,9 +25,10 @@ export class Contexts {
     return new Contexts(new Uint16Array(n).fill(EVEN), new Uint8Array(n));
   }
 
-  /** @param {number[]} odds at the start, one for each context */
-  static preset(odds) {
-    return new Contexts(Uint16Array.from(odds), new Uint8Array(odds.length).fill(SEEN_AT_START));
+  /** @param {number[]} probabilities at the start, one for each context */
+  static preset(probabilities) {
+    const seen = new Uint8Array(probabilities.length).fill(SEEN_AT_START);
+    return new Contexts(Uint16Array.from(probabilities), seen);
   }
 }
 
@@ -32,7 +37,11 @@ export class RangeDecoder {
   constructor(content) {
     this.content = content;
     this.position = 0;
-    /** What is being decoded: the code of the error if the content ends. */
+    /**
+     * What is being decoded: the code of the error if the content ends.
+     *
+     * @type {import("./errors.js").ErrorCode}
+     */
     this.part = "positions";
     // The range may be 2**32, so that both are doubles that hold integers.
     this.range = 2 ** 32;
@@ -53,7 +62,7 @@ export class RangeDecoder {
    * @returns {0 | 1}
    */
   bit(contexts, i) {
-    const p = contexts.odds[i];
+    const p = contexts.probabilities[i];
     const n = contexts.seen[i];
     const split = Math.floor(this.range / 4096) * (p >> 4);
     const bit = this.code < split ? 1 : 0;
@@ -64,7 +73,7 @@ export class RangeDecoder {
       this.code -= split;
     }
     const moved = p + Math.floor((65536 * bit - p) / (n + 2));
-    contexts.odds[i] = Math.min(Math.max(moved, LEAST), MOST);
+    contexts.probabilities[i] = Math.min(Math.max(moved, LEAST), MOST);
     if (n < MOST_SEEN) contexts.seen[i] = n + 1;
     while (this.range < 2 ** 24) {
       this.range *= 256;

@@ -47,61 +47,80 @@ export class GlPainter {
   constructor(gl) {
     this.gl = gl;
     this.canvas = gl.canvas;
-    this.prepare();
+    /** @type {import("../decoder/vmesh.js").Mesh | null} */
+    this.mesh = null;
+    this.nEnds = 0;
+    this.resources = this.prepare();
   }
 
-  /** Makes what lives in the graphics hardware; again after it was lost. */
+  /** Makes what lives in the graphics hardware. */
   prepare() {
     const { gl } = this;
-    this.picture = programOf(gl, PICTURE_SHADER);
-    this.inks = programOf(gl, INK_SHADER);
-    this.positions = gl.createBuffer();
-    this.colors = gl.createBuffer();
-    this.corners = gl.createBuffer();
-    this.ends = gl.createBuffer();
     gl.enableVertexAttribArray(POSITION);
     gl.enableVertexAttribArray(COLOR);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    return {
+      picture: programOf(gl, PICTURE_SHADER),
+      inks: programOf(gl, INK_SHADER),
+      positions: gl.createBuffer(),
+      colors: gl.createBuffer(),
+      corners: gl.createBuffer(),
+      ends: gl.createBuffer(),
+    };
+  }
+
+  /** Makes anew what was lost. */
+  restore() {
+    this.resources = this.prepare();
     if (this.mesh) this.setMesh(this.mesh);
   }
 
   /** @param {import("../decoder/vmesh.js").Mesh} mesh */
   setMesh(mesh) {
-    const { gl } = this;
+    const { gl, resources } = this;
     this.mesh = mesh;
     this.nEnds = 0;
-    fill(gl, gl.ARRAY_BUFFER, this.positions, Float32Array.from(mesh.vertices));
+    fill(gl, gl.ARRAY_BUFFER, resources.positions, Float32Array.from(mesh.vertices));
     gl.vertexAttribPointer(POSITION, 2, gl.FLOAT, false, 0, 0);
-    fill(gl, gl.ARRAY_BUFFER, this.colors, colorsOf(mesh));
+    fill(gl, gl.ARRAY_BUFFER, resources.colors, colorsOf(mesh));
     gl.vertexAttribPointer(COLOR, 4, gl.UNSIGNED_SHORT, true, 0, 0);
-    fill(gl, gl.ELEMENT_ARRAY_BUFFER, this.corners, Uint32Array.from(mesh.triangles));
+    fill(gl, gl.ELEMENT_ARRAY_BUFFER, resources.corners, Uint32Array.from(mesh.triangles));
   }
 
   /**
-   * @param {object} frame columns and rows of the canvas; left, top, scaleX, scaleY of the picture
-   * @param {{wireframe?: boolean, vertices?: boolean, pixelRatio?: number}} [marks]
+   * Draws the mesh, which must have been set.
+   *
+   * @param {import("./view.js").Frame} frame
+   * @param {import("./painter.js").Marks} [marks]
    */
   draw(frame, { wireframe = false, vertices = false, pixelRatio = 1 } = {}) {
-    const { gl, mesh } = this;
+    const { gl, mesh, resources } = this;
+    if (!mesh) return;
     if (this.canvas.width !== frame.columns) this.canvas.width = frame.columns;
     if (this.canvas.height !== frame.rows) this.canvas.height = frame.rows;
     gl.viewport(0, 0, frame.columns, frame.rows);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.disable(gl.BLEND);
-    this.use(this.picture, frame);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.corners);
+    this.use(resources.picture, frame, mesh.subdivision);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, resources.corners);
     gl.drawElements(gl.TRIANGLES, mesh.triangles.length, gl.UNSIGNED_INT, 0);
     if (!wireframe && !vertices) return;
     gl.enable(gl.BLEND);
-    this.use(this.inks, frame);
-    if (wireframe) this.drawEdges();
-    if (vertices) this.drawVertices(pixelRatio);
+    this.use(resources.inks, frame, mesh.subdivision);
+    if (wireframe) this.drawEdges(mesh);
+    if (vertices) this.drawVertices(mesh, pixelRatio);
   }
 
-  /** Chooses a program and tells it where the picture is. */
-  use(program, { columns, rows, left, top, scaleX, scaleY }) {
+  /**
+   * Chooses a program and tells it where the picture is.
+   *
+   * @param {WebGLProgram} program
+   * @param {import("./view.js").Frame} frame
+   * @param {number} subdivision
+   */
+  use(program, { columns, rows, left, top, scaleX, scaleY }, subdivision) {
     const { gl } = this;
-    const unit = 2 ** this.mesh.subdivision;
+    const unit = 2 ** subdivision;
     gl.useProgram(program);
     const centreX = ((columns / 2 - left) / scaleX) * unit;
     const centreY = ((rows / 2 - top) / scaleY) * unit;
@@ -110,41 +129,56 @@ export class GlPainter {
     gl.uniform2f(gl.getUniformLocation(program, "scale"), clipX, clipY);
   }
 
-  drawEdges() {
-    const { gl } = this;
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.ends);
+  /** @param {import("../decoder/vmesh.js").Mesh} mesh */
+  drawEdges(mesh) {
+    const { gl, resources } = this;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, resources.ends);
     if (this.nEnds === 0) {
-      const ends = endsOf(this.mesh);
-      fill(gl, gl.ELEMENT_ARRAY_BUFFER, this.ends, ends);
+      const ends = endsOf(mesh);
+      fill(gl, gl.ELEMENT_ARRAY_BUFFER, resources.ends, ends);
       this.nEnds = ends.length;
     }
     this.setInk(LINE_INK, 1, false);
     gl.drawElements(gl.LINES, this.nEnds, gl.UNSIGNED_INT, 0);
   }
 
-  drawVertices(pixelRatio) {
-    const { gl, mesh } = this;
-    for (const [ink, size] of [[RIM_INK, 6], [DOT_INK, 4]]) {
+  /**
+   * @param {import("../decoder/vmesh.js").Mesh} mesh
+   * @param {number} pixelRatio
+   */
+  drawVertices(mesh, pixelRatio) {
+    const { gl } = this;
+    for (const { ink, size } of [{ ink: RIM_INK, size: 6 }, { ink: DOT_INK, size: 4 }]) {
       this.setInk(ink, size * pixelRatio, true);
       gl.drawArrays(gl.POINTS, 0, mesh.vertices.length / 2);
     }
   }
 
+  /**
+   * @param {number[]} ink
+   * @param {number} pointSize
+   * @param {boolean} isRound
+   */
   setInk(ink, pointSize, isRound) {
-    const { gl, inks } = this;
+    const { gl } = this;
+    const { inks } = this.resources;
     gl.uniform4fv(gl.getUniformLocation(inks, "ink"), ink);
     gl.uniform1f(gl.getUniformLocation(inks, "pointSize"), pointSize);
     gl.uniform1i(gl.getUniformLocation(inks, "isRound"), isRound ? 1 : 0);
   }
 }
 
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {string} fragmentShader
+ */
 function programOf(gl, fragmentShader) {
   const program = gl.createProgram();
-  for (const [type, source] of [
-    [gl.VERTEX_SHADER, VERTEX_SHADER],
-    [gl.FRAGMENT_SHADER, fragmentShader],
+  for (const { type, source } of [
+    { type: gl.VERTEX_SHADER, source: VERTEX_SHADER },
+    { type: gl.FRAGMENT_SHADER, source: fragmentShader },
   ]) {
-    const shader = gl.createShader(type);
+    const shader = /** @type {WebGLShader} */ (gl.createShader(type));
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
     gl.attachShader(program, shader);
@@ -155,12 +189,22 @@ function programOf(gl, fragmentShader) {
   return program;
 }
 
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {number} target
+ * @param {WebGLBuffer} buffer
+ * @param {Float32Array | Uint16Array | Uint32Array} array
+ */
 function fill(gl, target, buffer, array) {
   gl.bindBuffer(target, buffer);
   gl.bufferData(target, array, gl.STATIC_DRAW);
 }
 
-/** Red, green, blue and alpha of each vertex, 65535 for the largest sample. */
+/**
+ * Red, green, blue and alpha of each vertex, 65535 for the largest sample.
+ *
+ * @param {import("../decoder/vmesh.js").Mesh} mesh
+ */
 function colorsOf({ vertices, samples, steps, depth }) {
   const colors = new Float64Array(2 * vertices.length);
   return Uint16Array.from(fillRgba(colors, samples, steps.length, depth, 65535), Math.round);

@@ -1,0 +1,23 @@
+/** What the scripts need of a page and a browser, or an error. */
+
+/**
+ * The element of a page that a selector finds.
+ *
+ * @template {Element} T
+ * @param {ParentNode} root
+ * @param {string} selector
+ * @param {new () => T} kind
+ * @returns {T}
+ */
+export function elementIn(root, selector, kind) {
+  const found = root.querySelector(selector);
+  if (found instanceof kind) return found;
+  throw new Error(`there is no ${kind.name} ${selector}`);
+}
+
+/** @param {HTMLCanvasElement} canvas that has no context of another kind */
+export function contextOf(canvas) {
+  const context = canvas.getContext("2d");
+  if (context) return context;
+  throw new Error("there is no context to draw with");
+}
