@@ -2,8 +2,8 @@
 
 ::
 
-    python tools/api_reference.py            write it
-    python tools/api_reference.py --check    status 1 if it is not what the docstrings say
+    python -m tools.api_reference            write it
+    python -m tools.api_reference --check    status 1 if it is not what the docstrings say
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any, Final
 
 import click
-from made_document import keep
 
 import vmesh
+from tools.made_document import keep
 
 TARGET: Final = Path(__file__).parents[1] / "docs" / "api.md"
 
@@ -48,7 +48,7 @@ _ROLE: Final = re.compile(r":\w+:`~?([^`]*)`")
 @click.option("--check", is_flag=True, help="Write nothing; status 1 if the file is out of date.")
 def main(check: bool) -> None:
     """Write docs/api.md."""
-    keep(TARGET, reference(), "python tools/api_reference.py", check=check)
+    keep(TARGET, reference(), "python -m tools.api_reference", check=check)
 
 
 def reference() -> str:

@@ -1,6 +1,6 @@
 """Write ``docs/cli.md``, the reference of the command line, from the commands themselves.
 
-``python tools/cli_reference.py`` writes it; a test says when it is out of date.
+``python -m tools.cli_reference`` writes it; a test says when it is out of date.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 import click
-from made_document import keep
 
+from tools.made_document import keep
 from vmesh.cli.main import COMMANDS, cli
 
 TARGET: Final = Path(__file__).parents[1] / "docs" / "cli.md"
@@ -18,7 +18,7 @@ TARGET: Final = Path(__file__).parents[1] / "docs" / "cli.md"
 _WIDTH: Final = 90
 _START: Final = """# The command line
 
-Written by `python tools/cli_reference.py` from the commands; not to be edited.
+Written by `python -m tools.cli_reference` from the commands; not to be edited.
 
 The shell completes commands and options once it is told to, by a line in its start-up file:
 
@@ -50,7 +50,7 @@ def _section(command: click.Command, context: click.Context) -> str:
 @click.option("--check", is_flag=True, help="Write nothing; the status is 1 if it is out of date.")
 def main(check: bool) -> None:
     """Write docs/cli.md."""
-    keep(TARGET, reference(), "python tools/cli_reference.py", check=check)
+    keep(TARGET, reference(), "python -m tools.cli_reference", check=check)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What ``fuzz.py --atheris`` starts: files changed further where they reached new code.
+"""What ``tools.fuzz --atheris`` starts: files changed further where they reached new code.
 
 The kernels have to be plain Python for their lines to be seen: NUMBA_DISABLE_JIT=1.
 """

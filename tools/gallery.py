@@ -1,6 +1,6 @@
 """Write ``docs/gallery.md``: photographs beside their meshes, with figures.
 
-``python tools/gallery.py --images DIR`` takes the pictures that it knows the source and licence of
+``python -m tools.gallery --images DIR`` takes the pictures that it knows the source and licence of
 from a folder, such as ``skimage/data`` of an installed scikit-image.
 """
 
@@ -14,11 +14,13 @@ from typing import Final
 
 import click
 import numpy as np
-from measurement import images_option, load_photographs
 from PIL import Image
-from raster_codecs import JPEG, WEBP, CodecSearch
 
 import vmesh
+from benchmarks.options import images_option
+from benchmarks.photographs import load_photographs
+from benchmarks.raster.codecs import JPEG, WEBP
+from benchmarks.raster.search import CodecSearch
 from vmesh.arrays import UInt8Array
 from vmesh.formats.raster.picture import flatten
 from vmesh.metrics import psnr
@@ -37,7 +39,7 @@ at most {side} pixels a side here. PSNR is over RGB, in dB and at full size; JPE
 best that the searches of [rate-distortion.md](rate-distortion.md) find in as many bytes. When to
 use meshes, and when not, is in the [tutorial](tutorial.md#when-to-use-it).
 
-Written by `python tools/gallery.py --images DIR`, from the data of
+Written by `python -m tools.gallery --images DIR`, from the data of
 [scikit-image](https://scikit-image.org) 0.26, whose notes the sources and licences are taken from.
 """
 
@@ -99,7 +101,7 @@ ENTRIES: Final = {
 )
 def main(folder: Path, bits: float, effort: int, target: Path) -> None:
     """Write the gallery; its pictures stand in a folder of its name beside it."""
-    found = {photo.name: photo.pixels for photo in load_photographs(folder, tuple(ENTRIES))}
+    found = {photo.name: photo.pixels for photo in load_photographs(folder, names=tuple(ENTRIES))}
     pictures = target.with_suffix("")
     pictures.mkdir(exist_ok=True)
     parts = [_START.format(bits=bits, effort=effort, side=_SIDE)]

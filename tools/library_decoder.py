@@ -1,4 +1,4 @@
-"""The library as a decoder for conformance.py: ``python tools/library_decoder.py IN OUT``."""
+"""The library as a decoder for conformance.py: ``python -m tools.library_decoder IN OUT``."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def test_the_reference_of_the_command_line_is_current() -> None:
-    command = [sys.executable, "tools/cli_reference.py", "--check"]
+    command = [sys.executable, "-m", "tools.cli_reference", "--check"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, text=True)
     assert done.returncode == 0, done.stderr
 

@@ -14,7 +14,7 @@ REFERENCE = (ROOT / "docs" / "api.md").read_text("utf-8")
 
 
 def test_the_reference_is_current() -> None:
-    command = [sys.executable, "tools/api_reference.py", "--check"]
+    command = [sys.executable, "-m", "tools.api_reference", "--check"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False)
     assert done.returncode == 0, done.stderr.decode()
 

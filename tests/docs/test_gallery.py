@@ -43,7 +43,7 @@ def test_its_program_writes_it(tmp_path: Path) -> None:
         with Image.open(ROOT / "tests" / "images" / "chelsea.png") as image:
             image.crop((100, 60, 260, 160)).save(photos / f"{name}.png")
     target = tmp_path / "gallery.md"
-    command = [sys.executable, "tools/gallery.py", "--images", str(photos), "--effort", "1"]
+    command = [sys.executable, "-m", "tools.gallery", "--images", str(photos), "--effort", "1"]
     subprocess.run([*command, "--output", str(target)], cwd=ROOT, check=True, capture_output=True)
     assert pictures_of(target.read_text("utf-8")) == ["gallery/chelsea.webp"]
     with Image.open(tmp_path / "gallery" / "chelsea.webp") as image:

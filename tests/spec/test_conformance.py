@@ -115,7 +115,7 @@ def script(folder: Path, body: str) -> str:
 
 
 def test_the_runner_passes_the_library() -> None:
-    decoder = f"{sys.executable} {_ROOT / 'tools' / 'library_decoder.py'} {{in}} {{out}}"
+    decoder = f"{sys.executable} -m tools.library_decoder {{in}} {{out}}"
     status, output = run(decoder, "--match", "flips")
     n_files = sum("flips" in name for name in _ENTRIES)
     assert (status, output) == (0, f"{n_files} of {n_files} files as expected\n")

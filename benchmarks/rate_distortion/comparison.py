@@ -1,24 +1,15 @@
-"""What the codecs made of the pictures: rows of figures, and the tables that compare vmesh."""
+"""Tables that compare vmesh with the codecs by their figures."""
 
 from __future__ import annotations
 
-import csv
-import io
-import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, fields
-from pathlib import Path
+from collections.abc import Callable, Iterable
 from statistics import mean
 from typing import Final
 
-from measurement import Photograph, Table, import_optional
-from PIL import Image
-from raster_codecs import Coded, available_codecs
+from benchmarks.photographs import n_pictures
+from benchmarks.rate_distortion.figures import VMESH, Row, codecs_of, pictures_of, points_of
+from benchmarks.tables import Table
 
-from vmesh.arrays import UInt8Array
-from vmesh.metrics import compare
-
-VMESH: Final = "vmesh"
 METRICS: Final = {
     "psnr_rgb": ("PSNR (RGB), dB", 2),
     "psnr_y": ("PSNR (luma), dB", 2),
@@ -27,92 +18,19 @@ METRICS: Final = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """What one codec made of one picture at one point: a rate, a size or a task of the part."""
-
-    part: str
-    picture: str
-    point: str
-    budget: int
-    codec: str
-    settings: str
-    n_bytes: int
-    psnr_rgb: float
-    psnr_y: float
-    ssim: float
-    ssimulacra2: float
-    encode_seconds: float
-    decode_seconds: float
-
-
-def row_of(
-    part: str,
-    photograph: Photograph,
-    point: str,
-    budget: int,
-    coded: Coded,
-    perceptual: bool = True,
-) -> Row:
-    """Row of a picture that came back from a file."""
-    measures = compare(photograph.pixels, coded.pixels)
-    return Row(
-        part,
-        photograph.name,
-        point,
-        budget,
-        coded.codec,
-        coded.settings,
-        coded.n_bytes,
-        measures["psnr_rgb"],
-        measures["psnr_y"],
-        measures["ssim"],
-        ssimulacra2(photograph.pixels, coded.pixels) if perceptual else math.nan,
-        coded.encode_seconds,
-        coded.decode_seconds,
-    )
-
-
-def ssimulacra2(original: UInt8Array, decoded: UInt8Array) -> float:
-    """The perceptual measure SSIMULACRA2, at most 100; not a number without its package."""
-    module = import_optional("ssimulacra2")
-    if module is None:
-        return math.nan
-    return float(module.compute_ssimulacra2(*map(as_file, (original, decoded))))
-
-
-def as_file(pixels: UInt8Array) -> io.BytesIO:
-    """A picture as a lossless file in memory."""
-    stream = io.BytesIO()
-    Image.fromarray(pixels).save(stream, "BMP")
-    stream.seek(0)
-    return stream
-
-
-def write_rows(path: Path, rows: Sequence[Row]) -> None:
-    """Write all rows as a table with commas."""
-    with path.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(row) for row in rows)
-
-
 def means_table(rows: list[Row], metric: str) -> Table:
     """Means of a metric: a row for each codec, a column for each point."""
     name, digits = METRICS[metric]
     points = points_of(rows)
-    n_pictures = len(pictures_of(rows))
+    n = len(pictures_of(rows))
     lines = [
         (
             codec,
-            *(
-                mean_cell(Figures(rows, point, metric), codec, digits, n_pictures)
-                for point in points
-            ),
+            *(mean_cell(Figures(rows, point, metric), codec, digits, n) for point in points),
         )
         for codec in codecs_of(rows)
     ]
-    title = f"{name}: mean of {n_pictures} picture{'s' * (n_pictures != 1)} (vmesh less the codec)"
+    title = f"{name}: mean of {n_pictures(n)} (vmesh less the codec)"
     return Table(title, ("codec", *points), lines)
 
 
@@ -139,8 +57,8 @@ class Figures:
         ]
 
 
-def mean_cell(figures: Figures, codec: str, digits: int, n_pictures: int) -> str:
-    """A codec's mean, that of vmesh less it, and how many pictures it reached if not all."""
+def mean_cell(figures: Figures, codec: str, digits: int, n: int) -> str:
+    """A codec's mean, that of vmesh less it, and how many pictures it reached if not all `n`."""
     reached = figures.of(codec)
     if not reached:
         return "-"
@@ -148,7 +66,7 @@ def mean_cell(figures: Figures, codec: str, digits: int, n_pictures: int) -> str
     gains = figures.gains(codec)
     if codec != VMESH and gains:
         cell += f" ({mean(gains):+.{digits}f})"
-    return cell if len(reached) == n_pictures else f"{cell} of {len(reached)}"
+    return cell if len(reached) == n else f"{cell} of {len(reached)}"
 
 
 def seconds_table(rows: list[Row]) -> Table:
@@ -208,20 +126,3 @@ def picture_cell(row: Row | None, ours: Row | None) -> str:
         return "-"
     cell = f"{row.psnr_rgb:.2f}" + "*" * row.settings.endswith("half")
     return cell if ours is None else f"{cell} ({ours.psnr_rgb - row.psnr_rgb:+.2f})"
-
-
-def points_of(rows: Iterable[Row]) -> list[str]:
-    """The rates or sizes of some rows."""
-    return list(dict.fromkeys(row.point for row in rows))
-
-
-def pictures_of(rows: Iterable[Row]) -> list[str]:
-    """The pictures of some rows."""
-    return list(dict.fromkeys(row.picture for row in rows))
-
-
-def codecs_of(rows: Iterable[Row]) -> list[str]:
-    """The codecs of some rows, vmesh first and the others in the order of `available_codecs`."""
-    found = dict.fromkeys(row.codec for row in rows)
-    order = [VMESH, *available_codecs()]
-    return sorted(found, key=lambda codec: order.index(codec) if codec in order else len(order))

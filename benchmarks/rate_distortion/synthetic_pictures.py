@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from measurement import Photograph
 from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import gaussian_filter
 
+from benchmarks.photographs import Photograph
 from vmesh.arrays import Float64Array, UInt8Array
 
 WIDTH: Final = 768

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Final
 
-from measurement import Photograph, import_optional
 from PIL import Image
+
+from benchmarks.photographs import Photograph
+from benchmarks.software import import_optional
 
 # What decides on size and quality: bits of a colour, levels between layers, area of specks that
 # are left out. Finer than the first, files of photographs pass 20 MB.

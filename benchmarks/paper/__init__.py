@@ -1,0 +1,1 @@
+"""The encoder as its paper measured it."""

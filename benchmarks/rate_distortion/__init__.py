@@ -1,0 +1,1 @@
+"""Quality of vmesh and of other lossy codecs at equal bytes."""

@@ -1,0 +1,1 @@
+"""Speed of decoders and of the command line."""

@@ -1,0 +1,1 @@
+"""Vector output: its bytes, and how close other programs draw it to our raster."""
