@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -76,17 +75,3 @@ def test_the_page_shows_the_impression_and_then_the_file(folder: Path) -> None:
     assert asked.index("page.html") < asked.index("coffee.vmesh")
     expected = np.asarray(vmesh.render(vmesh.load(folder / "coffee.vmesh")))
     assert psnr(shown, expected) > 40
-
-
-def test_its_links_lead_to_files_and_headings() -> None:
-    headings = {}
-    for name in ("README.md", "docs/tutorial.md", "docs/rate-distortion.md", "docs/benchmarks.md"):
-        text = (ROOT / name).read_text("utf-8")
-        found = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
-        words = (re.sub(r"[^\w\- ]", "", heading.lower()) for heading in found)
-        headings[(ROOT / name).resolve()] = {heading.replace(" ", "-") for heading in words}
-    for target in re.findall(r"\]\(([^)]*)\)", TUTORIAL):
-        name, _, heading = target.partition("#")
-        path = (ROOT / "docs" / (name or "tutorial.md")).resolve()
-        assert path in headings, target
-        assert not heading or heading in headings[path], target
