@@ -10,7 +10,7 @@
 
 References
 ----------
-O. Devillers, "On deletion in Delaunay triangulations", 1999.
+O. Devillers, "On deletion in Delaunay triangulations", Symposium on Computational Geometry, 1999.
 """
 
 from __future__ import annotations
