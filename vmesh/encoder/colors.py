@@ -19,7 +19,7 @@ _HIDDEN_WEIGHT: Final = 1e-4  # of a transparent pixel's colour, so that the sys
 
 
 def sample_colors(image: SampleArray, vertices: Int32Array, unit: int) -> Float64Array:
-    """Colours of the pixels that the vertices lie in; the paper's choice.
+    """Colours of the pixels that the vertices lie in, as Zhao, Feng and Zhou (2013) take them.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ def fill_star(
     ears: Int64Array,
     count: int,
 ) -> None:
-    """Put the triangles of some ears in place of the first of a star.
+    """Put the triangles of some ears in place of the first triangles of a star.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Half-edges of a triangle mesh: walks around them, and the changes that all meshing is made of.
+"""Half-edges of a triangle mesh: walks around them, and the edits that all meshing is made of.
 
 Triangle t has the half-edges 3t, 3t+1, 3t+2. ``origin[e]``, which is ``triangles.flat[e]``, is the
 vertex that half-edge e leaves, and ``twin[e]`` the half-edge on its other side, -1 on the border::

@@ -224,4 +224,4 @@ def apportion(weights: Sequence[float], total: int) -> list[int]:
 
 
 def _say_nothing() -> None:
-    """The report of a job: only the thread that waits for it may call what a caller gave."""
+    """Report nothing, as jobs do: only the thread that waits for them may call a report."""

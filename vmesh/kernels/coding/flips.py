@@ -59,7 +59,7 @@ def code_flips(
     removed: Int64Array,
     created: Int64Array,
 ) -> int:
-    """Code which edges of the Delaunay triangulation are flipped, one bit for each in question.
+    """Code which edges of the Delaunay triangulation are flipped, a bit for each edge in question.
 
     A queue holds the edges in question: at first all inner edges, then the four sides around each
     flipped one. An edge whose quad is not strictly convex is passed over. The context is made of
