@@ -7,9 +7,9 @@ meta:
   endian: le
   bit-endian: le
 doc: |
-  Container and header of version 1.1; `vmesh.md`, sections 3 and 4, is what counts. The content of
-  the chunk `M`, and most of that of `T`, is an arithmetic code (sections 5 to 8), which cannot be
-  described here. Checksums, shortest forms of numbers, ranges and the order of the chunks are not
+  Container and header of version 1.1; `vmesh.md`, sections 3 and 4, is normative. The content of
+  the chunk `M`, and most of that of `T`, is the output of a range coder (sections 5 to 8), which
+  cannot be described here. Checksums, shortest forms of numbers, ranges and the order of the chunks are not
   checked, nor that a file ends where it should.
 doc-ref: vmesh.md
 seq:

@@ -1,1 +1,1 @@
-"""What makes documents and tries decoders, each run as ``python -m tools.NAME``."""
+"""Programs that make documents and try decoders, each run as ``python -m tools.NAME``."""

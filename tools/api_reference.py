@@ -85,7 +85,7 @@ def _is_property(member: object) -> bool:
 
 
 def _call(name: str, value: Any) -> str:
-    """How a name is used, as a block of code; nothing for an exception."""
+    """Block of code that shows how a name is used; nothing for an exception."""
     if inspect.isclass(value):
         if issubclass(value, BaseException):
             return ""

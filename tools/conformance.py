@@ -51,7 +51,7 @@ def main(decoder: str, match: str, timeout: float, folder: Path) -> None:
 
 
 def try_file(decoder: str, folder: Path, entry: dict[str, Any], timeout: float) -> str:
-    """What is wrong with what a decoder makes of a file; nothing if it is as expected."""
+    """Fault of what a decoder makes of a file; nothing if it is as expected."""
     path = folder / entry["file"]
     if sha256(path) != entry["sha256"]:
         return "the file itself is not the one of the manifest"
@@ -79,7 +79,7 @@ def try_file(decoder: str, folder: Path, entry: dict[str, Any], timeout: float) 
 def check_refusal(
     expected: str, done: subprocess.CompletedProcess[str], code: str, made: list[str]
 ) -> str:
-    """What is wrong with an answer to an invalid file."""
+    """Fault of an answer to an invalid file; nothing if there is none."""
     if done.returncode != 1:
         return f"expected status 1 and the code {expected}, got status {done.returncode}"
     if code != expected:
@@ -88,7 +88,7 @@ def check_refusal(
 
 
 def check_files(entry: dict[str, Any], done: subprocess.CompletedProcess[str], out: Path) -> str:
-    """What is wrong with an answer to a valid file."""
+    """Fault of an answer to a valid file; nothing if there is none."""
     if done.returncode != 0:
         said = (done.stdout + done.stderr).strip().splitlines() or ["nothing"]
         return f"expected status 0, got {done.returncode} and {said[-1]!r}"

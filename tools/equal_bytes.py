@@ -70,7 +70,7 @@ def main(
 
 
 def panels_of(pixels: UInt8Array, bits: float, effort: int) -> list[Panel]:
-    """What a mesh and the other codecs make of a photograph; none where no file is so small."""
+    """Panels of a mesh and the other codecs; none of a codec without so small a file."""
     data = encode(pixels, bits, effort)
     search = CodecSearch(pixels)
     others = [search.best(codec, len(data)) for codec in (WEBP, JPEG)]

@@ -1,4 +1,4 @@
-"""What ``tools.fuzz --atheris`` starts: files changed further where they reached new code.
+"""The process that ``tools.fuzz --atheris`` starts: it changes files that reached new code further.
 
 The kernels have to be plain Python for their lines to be seen: NUMBA_DISABLE_JIT=1.
 """

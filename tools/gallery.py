@@ -46,7 +46,7 @@ Written by `python -m tools.gallery --images DIR`, from the data of
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """What is said of a picture: its kind, its source with the licence, and what to look at."""
+    """Text about a picture: its kind, its source with the licence, and what to look at."""
 
     kind: str
     source: str
@@ -152,7 +152,7 @@ def _wrapped(text: str) -> str:
 
 
 def side_by_side(first: UInt8Array, second: UInt8Array) -> bytes:
-    """Both pictures, reduced, in a WebP file of at most 40,000 bytes."""
+    """WebP file of two pictures, reduced, side by side, of at most 40,000 bytes."""
     images = [Image.fromarray(pixels) for pixels in (first, second)]
     for image in images:
         image.thumbnail((_SIDE, _SIDE), Image.Resampling.LANCZOS)

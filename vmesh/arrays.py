@@ -10,7 +10,7 @@ import numpy.typing as npt
 UInt8Array: TypeAlias = npt.NDArray[np.uint8]
 UInt16Array: TypeAlias = npt.NDArray[np.uint16]
 SampleArray: TypeAlias = npt.NDArray[Any]
-"""Samples: uint8, or uint16 for 9 to 16 bits; which of them depends on the picture."""
+"""Samples: uint8, or uint16 for 9 to 16 bits, depending on the picture."""
 
 Int32Array: TypeAlias = npt.NDArray[np.int32]
 Int64Array: TypeAlias = npt.NDArray[np.int64]

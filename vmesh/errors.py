@@ -53,11 +53,11 @@ class MeshError(VmeshError, ValueError):
 
 
 class PartialFileWarning(UserWarning):
-    """A file ends too early, and its mesh holds what could be told from the start of it."""
+    """A file ends too early, and its mesh holds what its start could tell."""
 
 
 def describe(error: BaseException) -> str:
-    """What went wrong, in one line."""
+    """One line that says what went wrong."""
     if isinstance(error, MemoryError):
         return "not enough memory"
     if isinstance(error, OSError) and error.strerror and error.filename is not None:

@@ -1,4 +1,4 @@
-"""A canvas cut into tiles by level and upright lines, a whole number of pixels apart."""
+"""A canvas cut into tiles by horizontal and vertical lines, a whole number of pixels apart."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Tile(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The tiles of a canvas, which are squares but for the last ones of a row and of a column.
+    """The tiles of a canvas: squares, except for the last of a row and of a column.
 
     Attributes
     ----------
@@ -32,12 +32,12 @@ class Grid(NamedTuple):
 
     @property
     def columns(self) -> int:
-        """Tiles in a row."""
+        """Number of tiles in a row."""
         return -(-self.width // self.side)
 
     @property
     def rows(self) -> int:
-        """Rows of tiles."""
+        """Number of rows of tiles."""
         return -(-self.height // self.side)
 
     @property

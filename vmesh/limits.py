@@ -1,4 +1,4 @@
-"""What the format allows a mesh to be, and what a caller allows a file or a request to cost."""
+"""Limits of the format on a mesh, and of a caller on the cost of a file or a request."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Limits:
     max_pixels : int
         Pixels of a canvas, of a photograph and of a raster that is asked for.
     max_vertices : int
-        Vertices of a mesh, those that tiles share counted for each.
+        Vertices of a mesh; those that tiles share count for each.
     max_tiles : int
         Tiles of a mesh.
     max_vertices_per_byte : int

@@ -1,4 +1,4 @@
-"""How close two pictures are: PSNR and SSIM."""
+"""Measures of how close two pictures are: PSNR and SSIM."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How work that takes long says what it is at."""
+"""Progress: the reports of work that takes long."""
 
 from __future__ import annotations
 

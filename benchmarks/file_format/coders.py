@@ -18,7 +18,7 @@ DRACO: Final = "Draco"
 
 
 def available_coders() -> dict[str, Coder]:
-    """The other ways whose packages are there."""
+    """Coders of meshes other than vmesh, as far as their packages are installed."""
     coders: dict[str, Coder] = {
         "raw arrays": raw,
         "raw, zlib 9": lambda mesh: zlib.compress(raw(mesh), 9),

@@ -57,7 +57,7 @@ def points_cells(
 
 
 def describe_points(counts: Mapping[tuple[str, Sampler], list[int]]) -> str:
-    """In words: whether smaller gammas give more points, and which sampler gives more."""
+    """Sentences that say whether smaller gammas give more points, and which sampler does."""
     names = list(dict.fromkeys(name for name, _ in counts))
     growing = {
         sampler: sum(

@@ -123,7 +123,7 @@ def quality_cells(
 
 
 def describe_quality(qualities: list[Quality]) -> str:
-    """In words: how equal the numbers of points are, and which sampler is better."""
+    """Sentences that say how equal the numbers of points are, and which sampler is better."""
     wanted = [quality.densities for quality in qualities]
     worst = max(
         abs(density / target - 1)
@@ -142,7 +142,7 @@ def describe_quality(qualities: list[Quality]) -> str:
 
 
 def multiclass_gains(qualities: list[Quality], colors: ColorMode) -> list[float]:
-    """What multiclass sampling gains over channels, in dB, for each picture and density."""
+    """Gains of multiclass sampling over channels, in dB, for each picture and density."""
     by_sampler = {
         sampler: [
             decibels

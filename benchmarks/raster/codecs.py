@@ -148,7 +148,7 @@ ENCODERS: Final[dict[str, Callable[[Image.Image], Iterator[Encoder]]]] = {
 
 
 def _jpegs(image: Image.Image, quality: int, subsampling: str) -> list[bytes]:
-    """The same pixels in one scan and in many: the smallest files have one."""
+    """JPEG files of an image in one scan and in many: the smallest files have one."""
     options = {"quality": quality, "subsampling": subsampling, "optimize": True}
     return [_saved(image, "JPEG", progressive=scans, **options) for scans in (False, True)]
 

@@ -28,7 +28,7 @@ class Coded:
 
 
 class CodecSearch:
-    """What each codec makes of one picture, at its own size and at half of it.
+    """Searches for the best files of a picture by each codec, at its own size and at half of it.
 
     Half-size files are reduced with Lanczos' filter and enlarged again with the bicubic one.
 

@@ -49,7 +49,7 @@ class Figures:
         return [value for (_, own), value in self._values.items() if own == codec]
 
     def gains(self, codec: str) -> list[float]:
-        """What vmesh has more than the codec, of the pictures that both reached."""
+        """Gains of vmesh over the codec, of the pictures that both reached."""
         return [
             self._values[picture, VMESH] - value
             for (picture, own), value in self._values.items()

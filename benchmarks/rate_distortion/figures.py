@@ -24,7 +24,7 @@ VMESH: Final = "vmesh"
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What one codec made of one picture at one point: a rate, a size or a task of the part."""
+    """Figures of a codec and a picture at one point: a rate, a size or a task of the part."""
 
     part: str
     picture: str

@@ -96,7 +96,7 @@ def drawing_cells(step: Step, timing: Timing, ours: Timing, raster: UInt8Array) 
 
 
 def describe_speed(timings: dict[str, Timing], size: Size) -> str:
-    """In words: the speed of our raster against its target."""
+    """Sentences about the speed of our raster against its target."""
     megapixels = size[0] * size[1] / 1e6
     sentences = []
     for name in (RENDER, KERNEL):

@@ -239,7 +239,7 @@ def test_with_a_lambda_of_0_a_level_goes_to_where_the_error_is_least() -> None:
     assert (np.abs(away[inside & (curvature > 0)]) <= 0.5 + 1e-9).all()
 
 
-def test_with_a_high_price_levels_follow_their_parents() -> None:
+def test_with_a_large_lambda_levels_follow_their_parents() -> None:
     problem = make_problem(20, 1, 0)
     kept = start(problem)
     settle(problem, kept, 1e6)

@@ -466,15 +466,15 @@ def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
     implied = {tuple(face) for face in triangles_of(dear).tolist()}
     charge = 0.5 * max(flip_gains(dear, image))
     counts = []
-    for surface, price in ((free, 0.0), (charged, charge), (dear, 1e12)):
+    for surface, cost in ((free, 0.0), (charged, charge), (dear, 1e12)):
         n_flipped = 0
         for _ in range(50):
             before = surface.errors.sum()
-            flipped = flip_edges(surface, image, work, price)
+            flipped = flip_edges(surface, image, work, cost)
             n_flipped += flipped
             if not flipped:
                 break
-            assert before - surface.errors.sum() > (price if surface is charged else 0.0) - 1e-6
+            assert before - surface.errors.sum() > (cost if surface is charged else 0.0) - 1e-6
         counts.append(n_flipped)
     assert counts[0] > counts[1] > counts[2] == 0
     assert {tuple(face) for face in triangles_of(dear).tolist()} == implied

@@ -571,7 +571,7 @@ def test_no_number_is_larger_than_stated() -> None:
     cross, in_circle = SPEC["cross"], SPEC["in_circle"]
     # The centre of the largest circle is a corner's; nine parents, half of them at either end.
     largest = {
-        ("6.1", "room of a box"): (far + 1) ** 2,
+        ("6.1", "lattice sites of a box"): (far + 1) ** 2,
         ("6.2", "doubled area of three vertices"): cross(*square[:3]),
         ("6.2", "in-circle determinant"): abs(in_circle(*square[:3], (far // 2, far // 2))),
         ("7.3", "sum of the weights"): 9 * 4096,

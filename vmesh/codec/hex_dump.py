@@ -1,4 +1,4 @@
-"""The bytes of a .vmesh file, field by field, for people: also of a file that is damaged."""
+"""The bytes of a .vmesh file, field by field, for people; the file may be damaged."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vmesh.limits import PLAIN_DEPTH
 
 
 class Field(NamedTuple):
-    """Some bytes of a file and what they mean."""
+    """A run of bytes of a file and its meaning."""
 
     offset: int
     data: bytes
@@ -98,7 +98,7 @@ def _header_sizes(data: bytes) -> Iterator[tuple[int, str]]:
 
 
 def _checksum(data: bytes, start: int, end: int) -> str:
-    """What is to be said of the checksum that follows some bytes."""
+    """Meaning of the checksum that follows some bytes: whether it is right."""
     stored = int.from_bytes(layout.take(data, end, 4, "a checksum"), "little")
     computed = zlib.crc32(data[start:end])
     return "CRC-32" if stored == computed else f"CRC-32, WRONG: it should be {computed:08x}"

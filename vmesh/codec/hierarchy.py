@@ -1,4 +1,4 @@
-"""The order in which colours are coded: from a few far vertices to all, each between its parents.
+"""The order in which colours are coded: coarse to fine, by a Kirkpatrick hierarchy.
 
 The finest vertices are an independent set of the Delaunay triangulation: each is surrounded by
 vertices that are coded before it, its parents. They are taken out of the triangulation, then the
@@ -9,6 +9,10 @@ next set is, until the corners are left::
     .   o   .
 
 Both sides know the positions before they code a colour, so the order costs nothing.
+
+References
+----------
+D. Kirkpatrick, "Optimal search in planar subdivisions", SIAM Journal on Computing 12(1), 1983.
 """
 
 from __future__ import annotations
@@ -23,7 +27,7 @@ from vmesh.kernels.half_edges import find_twins
 from vmesh.kernels.hierarchy import remove_independent_sets
 
 MAX_TRIANGLES: Final = 8
-"""A vertex of more triangles than this is not taken: it has to wait until there are fewer."""
+"""A vertex of more triangles than this is not taken: it has to wait until it has fewer."""
 
 
 class Hierarchy(NamedTuple):
@@ -45,7 +49,7 @@ class Hierarchy(NamedTuple):
 
 
 def find_corners(vertices: Int32Array, far: npt.ArrayLike) -> BoolArray:
-    """Which of some vertices, (n, 2), are corners of the rectangle from (0, 0) to `far`; (n,)."""
+    """True for each vertex that is a corner of the rectangle from (0, 0) to `far`, shape (n,)."""
     result: BoolArray = ((vertices == 0) | (vertices == np.asarray(far))).all(axis=1)
     return result
 

@@ -30,13 +30,13 @@ from vmesh.mesh.canonical_order import raster_keys
 _CUT_BYTES: Final = 4
 # Flips for each vertex, beyond which a list of the triangles is the shorter way.
 _MAX_FLIPS: Final = 4
-# To set them up takes longer than to read a small file: copies of them are used.
+# Setting these up takes longer than reading a small file: copies of them are used.
 _split_model = cache(initial_split_model)
 _level_model = cache(initial_level_model)
 
 
 class Flips(NamedTuple):
-    """Flips that turn the canonical Delaunay triangles into those of a mesh, by the edges that go.
+    """Flips that turn the canonical Delaunay triangles into those of a mesh, by the removed edges.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ def find_flips(mesh: Mesh) -> Flips | None:
 
     None if they are too many for flips to be a good way of coding.
     """
-    # A copy: the mesh's own arrays are read-only, for which kernels would be compiled once more.
+    # A copy: for the mesh's own arrays, which are read-only, kernels would be compiled once more.
     twins = find_twins(mesh.triangles.copy(), mesh.n_vertices)
     origin = mesh.triangles.ravel().astype(np.int64)
     capacity = min(_MAX_FLIPS * mesh.n_vertices, MAX_FLIPS * origin.size)
@@ -118,7 +118,7 @@ def decode_mesh(chunk: Chunk, header: Header) -> tuple[Mesh, dict[str, int]]:
 
 
 def _n_triangles(vertices: Int32Array, header: Header) -> int:
-    """How many triangles cover the canvas: Euler's formula leaves no choice."""
+    """Number of triangles that cover the canvas: Euler's formula leaves no choice."""
     on_border = (vertices == 0) | (vertices == [header.columns - 1, header.rows - 1])
     return 2 * len(vertices) - 2 - int(on_border.any(axis=1).sum())
 
@@ -128,18 +128,18 @@ class Encoder:
 
     Parameters
     ----------
-    room : int
-        Bytes for which there is room; more are counted, but not kept.
+    capacity : int
+        Bytes that are kept; more are only counted.
     """
 
-    def __init__(self, room: int) -> None:
+    def __init__(self, capacity: int) -> None:
         self.coder = np.zeros(range_coder.N_FIELDS, dtype=np.int64)
-        self.data = np.zeros(room, dtype=np.uint8)
+        self.data = np.zeros(capacity, dtype=np.uint8)
         range_coder.start(self.coder, self.data, 0)
 
     def positions(self, vertices: Int32Array, columns: int, rows: int) -> None:
         """Write distinct vertices of shape (n, 2), int32, in any order."""
-        points = vertices[np.argsort(_halving_keys(vertices, columns, rows))]
+        points = vertices[np.argsort(_kd_tree_keys(vertices, columns, rows))]
         _code_positions(self.coder, self.data, points, columns, rows)
 
     def triangles(self, triangles: Int32Array, n_vertices: int) -> None:
@@ -160,26 +160,26 @@ class Encoder:
         assert status == OK, "flips that were found are always coded"
 
     def finish(self) -> bytes:
-        """What was written, zeros cut off at the end, and cut short where there was no room."""
+        """Bytes that were written, up to the capacity, without the zeros that may be cut off."""
         length = range_coder.finish(self.coder, self.data)
         return self.data[: max(length, self.n_bytes - _CUT_BYTES)].tobytes()
 
     @property
     def n_bytes(self) -> int:
-        """Number of bytes written so far, whether there was room for them or not."""
+        """Number of bytes written so far, also beyond the capacity."""
         return int(self.coder[range_coder.POSITION])
 
 
 def encode(write: Callable[[Encoder], None]) -> bytes:
-    """Bytes that `write` lets an encoder write; where there is too little room it writes twice."""
-    room = 1 << 16
+    """Bytes that `write` lets an encoder write; it is called again if they exceed the capacity."""
+    capacity = 1 << 16
     while True:
-        encoder = Encoder(room)
+        encoder = Encoder(capacity)
         write(encoder)
         content = encoder.finish()
-        if encoder.n_bytes <= room:
+        if encoder.n_bytes <= capacity:
             return content
-        room = encoder.n_bytes
+        capacity = encoder.n_bytes
 
 
 class Decoder:
@@ -192,8 +192,8 @@ class Decoder:
     offset : int
         Where it starts in the file, for the errors.
     is_whole : bool
-        Whether the stream must be what it should be to its end. Otherwise it was cut off: the
-        positions must be there, and what follows is read as far as it goes.
+        Whether the stream must be complete. Otherwise it was cut off: the positions must be there,
+        and what follows is read as far as it goes.
     """
 
     def __init__(self, content: bytes, offset: int, *, is_whole: bool = True) -> None:
@@ -243,7 +243,7 @@ class Decoder:
         return self.sizes
 
     def _end(self, part: str, status: int) -> None:
-        """Refuse what was no such part, and note its size."""
+        """Refuse a part that ends too early or holds a bad number, and note its size."""
         read, length = int(self.coder[range_coder.POSITION]), len(self.data)
         missing = read - length - (_CUT_BYTES if self.is_whole else 0)
         if missing > 0 and (self.is_whole or part == "positions"):
@@ -300,8 +300,8 @@ def _code_flips(
     return status, origin.reshape(-1, 3).astype(np.int32)
 
 
-def _halving_keys(vertices: Int32Array, columns: int, rows: int) -> Int64Array:
-    """Integers that sort vertices in the order in which halving boxes reaches them, (n,)."""
+def _kd_tree_keys(vertices: Int32Array, columns: int, rows: int) -> Int64Array:
+    """Integers that sort vertices in the order in which the kd-tree reaches them, (n,)."""
     across, down = (columns - 1).bit_length(), (rows - 1).bit_length()
     x, y = vertices[:, 0].astype(np.int64), vertices[:, 1].astype(np.int64)
     keys = np.zeros(len(vertices), dtype=np.int64)

@@ -50,12 +50,12 @@ def write_text(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS)
 
 
 def mesh_from_text(text: str, *, limits: Limits = DEFAULT_LIMITS) -> Mesh:
-    """The mesh of a canonical text, to the last level; its metadata are not in it.
+    """Mesh of a canonical text, equal to the last level; metadata are not in the text.
 
     Raises
     ------
     MeshError
-        If a line is not what comes there.
+        If a line is not the one that is expected there.
     ValueError
         If the lines make no mesh that a file may hold.
     LimitError
@@ -87,12 +87,12 @@ class _Reader:
         self._next = 0
 
     def expect(self, wanted: str) -> None:
-        """Pass a line that says this; the last one is empty."""
+        """Pass a line, which must be the wanted one; the last is empty."""
         if self._take() != wanted:
             self._refuse(f"expected {wanted or 'the end'!r}")
 
     def numbers(self, keyword: str, count: int = 0) -> list[int]:
-        """Numbers of a line that begins with a word, so many if a count is given."""
+        """Numbers of a line that begins with a keyword; exactly `count` of them unless it is 0."""
         first, *words = self._take().split(" ")
         if first != keyword or not words or (count and len(words) != count):
             self._refuse(f"expected {keyword!r} and {count or 'some'} numbers")

@@ -20,8 +20,8 @@ def dumps(mesh: Mesh) -> bytes:
     mesh : Mesh
         A mesh that passes :meth:`Mesh.check`. Its vertices and triangles are written in
         canonical order; the canonical Delaunay triangles cost nothing, triangles that are some
-        flips away cost the flips, others are listed. With a `tile` it is written in tiles, which
-        cost the vertices on the lines between them twice.
+        flips away cost the flips, others are listed. With a `tile` it is written in tiles, and the
+        vertices on the lines between them are written twice.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def dumps(mesh: Mesh) -> bytes:
 
 
 def _code(meshes: list[Mesh]) -> tuple[int, list[bytes]]:
-    """Meshes in canonical order as they are coded, and the one way to tell all their triangles."""
+    """Connectivity that can tell the triangles of all meshes, and the content that codes each."""
     flips = [find_flips(mesh) for mesh in meshes]
     if any(some is None for some in flips):
         connectivity = layout.LISTED_TRIANGLES

@@ -19,7 +19,7 @@ _HIDDEN_WEIGHT: Final = 1e-4  # of a transparent pixel's colour, so that the sys
 
 
 def sample_colors(image: SampleArray, vertices: Int32Array, unit: int) -> Float64Array:
-    """Colours of the pixels that the vertices lie in; the paper's choice.
+    """Colours of the pixels that the vertices lie in, as Zhao, Feng and Zhou (2013) take them.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def fit_colors(
     Solves (A'GA + r I) c = A'G y + r s, where A holds the barycentric weights of every pixel's
     centre, G the pixels' weights, y the picture and s the sampled colours, with a small r. An
     RGBA picture's colours count in proportion to their alpha, so that what is hidden in
-    transparent pixels does not leak; alpha is fitted for itself.
+    transparent pixels does not leak; alpha is fitted on its own.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def fit_colors(
     colors : ndarray
         Shape (n, c), float64, 0 to the largest sample.
     equations : list of NormalEquations
-        What was solved, for each sample component.
+        Equations that were solved, for each sample component.
     """
     start = sample_colors(image, vertices, unit)
     whole = np.ones(image.shape[:2])
@@ -107,7 +107,7 @@ def fit_components(
     unit: int,
     start: Float64Array,
 ) -> tuple[Float64Array, list[NormalEquations]]:
-    """Colours closest to a picture with a weight for each pixel, each component for itself.
+    """Colours closest to a picture with a weight for each pixel, each component on its own.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def fit_components(
     colors : ndarray
         Shape (n, c), float64, 0 to the largest sample.
     equations : list of NormalEquations
-        What was solved, for each component.
+        Equations that were solved, for each component.
     """
     products = np.zeros((len(triangles), 6))
     moments = np.zeros(start.shape)

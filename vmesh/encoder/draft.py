@@ -18,7 +18,7 @@ UNIT: Final = 1 << SUBDIVISION  # lattice units in a pixel
 
 
 class Draft(Protocol):
-    """A mesh of a picture that is not final yet."""
+    """A mesh of a picture that is not final."""
 
     @property
     def n_vertices(self) -> int:
@@ -36,7 +36,7 @@ class Draft(Protocol):
 
 
 class SampledDraft:
-    """Vertices as they were sampled, and their Delaunay triangles.
+    """A draft of vertices where they were sampled, and their Delaunay triangles.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """How long a mesh is worked on.
+    """Settings of an effort: how long a mesh is worked on.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ class Effort:
     least_gain : float
         Share of the error that a round of refinement has to save for another one to follow.
     share_decay : float
-        What the share of the vertices that are exchanged falls by from round to round.
+        Factor of the share of the vertices that are exchanged, from round to round.
     n_reports : int
         About how often refinement reports progress.
     """
@@ -41,4 +41,4 @@ EFFORTS: Final = {
     8: Effort(density=0.25, max_rounds=32, least_gain=0.004, share_decay=0.96, n_reports=20),
     9: Effort(density=0.25, max_rounds=64, least_gain=0.0, share_decay=0.98, n_reports=50),
 }
-"""What each effort buys; 1 leaves the vertices where they are sampled."""
+"""Settings by effort; effort 1 leaves the vertices where they are sampled."""

@@ -42,8 +42,8 @@ def peak_of(image: SampleArray) -> int:
 def with_hidden_colors_replaced(image: SampleArray) -> SampleArray:
     """The picture with each fully transparent pixel in the colour of the nearest visible one.
 
-    What is hidden there would show where the mesh's alpha reaches a little further than that of
-    the picture. `image` has shape (h, w, c); only RGBA pictures change.
+    The hidden colours would show where the mesh's alpha reaches a little further than that of the
+    picture. `image` has shape (h, w, c); only RGBA pictures change.
     """
     if image.shape[2] != 4 or image[:, :, 3].all():
         return image
@@ -58,7 +58,7 @@ def with_hidden_colors_replaced(image: SampleArray) -> SampleArray:
 
 
 def premultiplied_planes(image: SampleArray) -> SampleArray:
-    """Planes of a picture, shape (c, h, w), colours multiplied by alpha."""
+    """Planes of a picture, shape (c, h, w), with colours that are premultiplied by alpha."""
     planes = np.ascontiguousarray(image.transpose(2, 0, 1))
     if len(planes) == 4:
         peak = peak_of(image)

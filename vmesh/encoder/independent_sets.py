@@ -20,7 +20,7 @@ BAND: Final = 128
 def independent_sets(
     points: Int64Array, triangles: Int64Array, band: int = BAND
 ) -> list[list[Int64Array]]:
-    """Groups of vertices of which those of one set can be moved at the same time, set by set.
+    """Groups of vertices, set by set: the groups of a set can be moved at the same time.
 
     Parameters
     ----------

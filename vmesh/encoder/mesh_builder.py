@@ -1,4 +1,4 @@
-"""The mesh builder: a draft with colours that are fitted, and levels that are worth their bits."""
+"""The mesh builder: fits the colours of a draft, and rounds them to levels worth their bits."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class MeshBuilder:
         if step is None:
             step = luma_step(draft.error, self.image.size, peak_of(self.image))
         lattice = ColorLattice.uniform(n_components, step, depth_of(self.image))
-        # Who asks for no rounding wants the fitted colours as they are.
+        # A caller that asks for no rounding wants the fitted colours as they are.
         lambda_ = 0.0 if self.color_step == 1 else lambda_of(draft)
         hierarchy = code_order(vertices, self.grid, UNIT)
         levels = quantize(equations, colors, hierarchy, lattice, lambda_)

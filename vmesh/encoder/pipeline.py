@@ -169,7 +169,7 @@ def encode_with(
 
 
 def count_steps(settings: Settings) -> int:
-    """About how often an encoding with these settings reports progress."""
+    """Approximate number of progress reports of an encoding with these settings."""
     if settings.method == "blue-noise" or settings.effort == 1:
         return 3
     refinement = EFFORTS[settings.effort].n_reports if settings.tile is None else REPORTS
@@ -179,7 +179,7 @@ def count_steps(settings: Settings) -> int:
 def _encode_blue_noise(
     image: SampleArray, settings: Settings, metadata: Metadata, report: Progress
 ) -> Mesh:
-    """The method of the paper: vertices stay where they are sampled."""
+    """Mesh by the method of Zhao, Feng and Zhou (2013): vertices stay where they are sampled."""
     height, width, n_components = image.shape
     report("sampling")
     _, samples = propose(image, settings)
@@ -205,7 +205,7 @@ def _grid(image: SampleArray, settings: Settings) -> Grid | None:
 
 
 def _sample(image: SampleArray, grid: Grid | None, settings: Settings, run: Run) -> Draft:
-    """Vertices where they are sampled."""
+    """Draft of vertices where they are sampled."""
     if grid is None:
         return sampled_draft(image, settings)
     return sampled_tiles(image, grid, settings, run)
@@ -214,7 +214,7 @@ def _sample(image: SampleArray, grid: Grid | None, settings: Settings, run: Run)
 def _remesh(
     image: SampleArray, settings: Settings, builder: MeshBuilder, report: Progress, run: Run
 ) -> Draft:
-    """The vertices of a dense sample that matter most, moved to better places."""
+    """Draft of the vertices that matter most in a dense sample, moved to better places."""
     height, width = image.shape[:2]
     draft: Remesher | TiledRemesher
     if builder.grid is None:

@@ -1,4 +1,4 @@
-"""Proposals: where the vertices of a mesh might be, sampled from what stands out in a picture."""
+"""Proposals: places where the vertices of a mesh might be, sampled from a picture's salience."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Colour levels of a mesh: the least error for the bits."""
+"""Colour levels of a mesh, by rate-distortion optimised quantisation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vmesh.kernels.quantization import N_SPREADS, TABLE_SIZE, descend, predict
 
 _MAX_SWEEPS: Final = 8
 _SETTLED: Final = 0.002  # share of levels whose change is not worth another sweep
-# Weight of the shape that a distribution is taken to have before any level was seen.
+# Weight, in levels, of the distribution that is assumed before any level was seen.
 _PRIOR: Final = 8.0
 
 
@@ -97,7 +97,7 @@ class _Form(NamedTuple):
 
 
 class _Children(NamedTuple):
-    """For each vertex the places of its children and their entries in the parents."""
+    """Children of each vertex: their places in the order and their entries in the parents."""
 
     starts: Int64Array
     places: Int64Array
@@ -142,7 +142,7 @@ def _residual(equations: list[NormalEquations], form: _Form, colors: Float64Arra
 
 
 def _children(hierarchy: Hierarchy) -> _Children:
-    """Who has each vertex as a parent."""
+    """Children of each vertex of a hierarchy."""
     entries = np.argsort(hierarchy.parents, kind="stable")
     owners = np.repeat(np.arange(len(hierarchy.order)), np.diff(hierarchy.starts))
     starts = np.searchsorted(hierarchy.parents[entries], np.arange(len(hierarchy.order) + 1))
@@ -152,8 +152,8 @@ def _children(hierarchy: Hierarchy) -> _Children:
 def _bit_table(levels: Int64Array, means: Float64Array, spreads: Int64Array) -> Float64Array:
     """Bits of each distance from the mean by component and spread, as adaptive coding finds them.
 
-    Shape (c, N_SPREADS, TABLE_SIZE). What was not seen is filled in from a geometric
-    distribution, and no distance costs less than a shorter one.
+    The shape is (c, N_SPREADS, TABLE_SIZE). Distances that were not seen are filled in from a
+    geometric distribution, and no distance costs less than a shorter one.
     """
     n_components = levels.shape[1]
     distances = np.minimum(np.abs(np.floor(levels - means + 0.5)), TABLE_SIZE - 1).astype(np.int64)

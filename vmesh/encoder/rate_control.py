@@ -1,8 +1,8 @@
 """Rate control: how many vertices a mesh needs for a wanted size or error.
 
 One lambda decides which vertices are worth their bits, which flips, and which levels
-(``rate_model``). Fewer vertices go with a larger one, so the number of vertices is the one thing to
-search for.
+(``rate_model``). Fewer vertices go with a larger lambda, so the number of vertices is all there is
+to search for.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _MAX_ATTEMPTS: Final = 30
 _SIZE_TOLERANCE: Final = 0.02
 _PSNR_TOLERANCE: Final = 0.1
 _STEP_DECAY: Final = 0.8
-# Decibels that twice as many vertices gain: expected, and the least and the most believed.
+# Decibels that twice as many vertices gain: a first guess, and bounds on what is measured.
 _GAIN: Final = 2.4
 _LEAST_GAIN: Final = 1.5
 _MOST_GAIN: Final = 8.0

@@ -6,6 +6,11 @@ here. With n vertices the squared error is about D = c n**-p, p = ``ERROR_POWER`
 proportional to vertices, so at the optimum, where dD/dR = -lambda,
 
     lambda = p D / R.
+
+References
+----------
+Y. Shoham, A. Gersho, "Efficient bit allocation for an arbitrary set of quantizers", IEEE
+Transactions on Acoustics, Speech, and Signal Processing 36(9), 1988: one lambda for all decisions.
 """
 
 from __future__ import annotations
@@ -18,7 +23,7 @@ ERROR_POWER: Final = 0.85
 SAMPLED_POWER: Final = 1.6
 """Lambda falls with about this power of the number of vertices that are only sampled."""
 
-# ERROR_POWER for each of the bits of a vertex, which are about 19 in a refined mesh.
+# ERROR_POWER divided by the bits of a vertex, which are about 19 in a refined mesh.
 _LAMBDA: Final = 0.045
 # What a vertex has to be worth to stay when a mesh is thinned: the bits that it takes, and what it
 # will gain in its final place.
@@ -26,12 +31,12 @@ _STAYING_BITS: Final = 20.0
 # Bits of a vertex for a first guess, and bytes of a file beside its vertices.
 _FIRST_BITS: Final = 18.0
 _FRAME_BYTES: Final = 28
-# Bits that an edge costs which is not Delaunay.
+# Bits that an edge costs if it is not Delaunay.
 _FLIP_BITS: Final = 3.5
 
-# Size of a mesh after refinement, for that before: 1.19 to 1.34 on five photographs at three sizes.
+# Size of a mesh after refinement, by that before: 1.19 to 1.34 on five photographs at three sizes.
 _REFINED_SIZE: Final = 1.28
-# The error before refinement, for that after it.
+# Error of a mesh before refinement, by that after it.
 _REFINEMENT_GAIN: Final = 1.6
 
 # At quality 75 a bit saves this much squared error, and 25 points of quality change it by the
@@ -72,7 +77,7 @@ def staying_cost(lambda_: float) -> float:
 
 
 def flip_cost(lambda_: float) -> float:
-    """Squared error that an edge has to save which is not Delaunay."""
+    """Squared error that an edge has to save if it is not Delaunay."""
     return _FLIP_BITS * lambda_
 
 
@@ -82,7 +87,7 @@ def luma_step(error: float, n_samples: int, peak: int) -> int:
 
 
 def error_before_refinement(error: float) -> float:
-    """Squared error of a mesh that will have this one when it is refined."""
+    """Squared error of a mesh that will have the given one when it is refined."""
     return _REFINEMENT_GAIN * error
 
 

@@ -1,4 +1,4 @@
-"""Remeshing: from a dense proposal to the mesh that leaves the least error for its vertices."""
+"""Remeshing: from a dense proposal to a mesh that leaves little error for its vertices."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _LEAST_SHARE: Final = 0.03
 # vertices); 23.47 and 35.10 with 4, 23.53 and 35.14 with 8 (effort 9).
 _CHANCE: Final = 8.0
 _SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
-_HASTE: Final = 0.6  # what the share falls by where the error has risen
+_HASTE: Final = 0.6  # factor of the share where the error has risen
 _PATIENCE: Final = 3  # rounds that are judged together
 _INSERTION_PASSES: Final = 6
 
@@ -107,8 +107,8 @@ class Remesher:
         report : callable
             Called before each fit of the colours.
         max_cost, max_error : float
-            Stop where each vertex left costs more squared error than this, or where the error
-            has grown to this.
+            Costs and error, both squared, at which to stop: where each vertex left costs more, or
+            where the error has grown to this.
         """
         share = _REFIT_SHARE if max_error == np.inf else _FINE_SHARE
         report()
@@ -122,7 +122,7 @@ class Remesher:
         self._compact(0)
 
     def refine(self, n_vertices: int, report: Callable[[], None]) -> None:
-        """Let the mesh settle, then exchange vertices round by round while that gains enough.
+        """Move and flip, then exchange vertices round by round while that gains enough.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Remesher:
         self._exchange_rounds(n_vertices, _FIRST_SHARE, report)
 
     def resize(self, n_vertices: int) -> None:
-        """Change the number of vertices, as far as there is anything to gain from more."""
+        """Change the number of vertices, as far as the picture allows."""
         change = abs(n_vertices - self.n_vertices) / self.n_vertices
         if change > _SMALL_CHANGE:
             share = min(2 * change, _FIRST_SHARE)
@@ -189,7 +189,7 @@ class Remesher:
         return points[order].astype(np.int32), sort_triangles(rank[triangles], len(order))
 
     def _remove(self, n_remove: int, max_cost: float, chance: float = 0.0) -> int:
-        """Remove the least useful vertices; how many went.
+        """Remove the least useful vertices; returns how many.
 
         The cost of each is multiplied by up to 1 + `chance`.
         """
@@ -205,12 +205,12 @@ class Remesher:
         return removed
 
     def _insert(self, n_insert: int) -> None:
-        """Insert vertices where they gain most; where they gain nothing only if they have to be."""
+        """Insert vertices where they gain most, and where they gain nothing only if need be."""
         surface, picture = self._surface, self._picture
         gains = np.full(len(surface.errors), np.nan)
         places = np.zeros((len(gains), 2), dtype=np.int64)
         for least_gain in (0.0, -np.inf):
-            # No two go side by side at once: the next call sees what this one changed.
+            # No two go into neighbouring triangles at once: the next call sees the changes of this.
             for _ in range(_INSERTION_PASSES):
                 if n_insert <= 0:
                     break
@@ -230,7 +230,7 @@ class Remesher:
                 self.n_vertices += inserted
 
     def _refit(self) -> None:
-        """Fit all colours anew and measure what error is left."""
+        """Fit all colours anew and measure the error that is left."""
         surface = self._surface
         corners = surface.origin.reshape(-1, 3)
         triangles = corners[corners[:, 0] >= 0].astype(np.int32)
@@ -249,7 +249,7 @@ class Remesher:
         self.error = float(surface.errors.sum())
 
     def _relocate(self) -> None:
-        """Move all vertices that something changed around to better places."""
+        """Move all vertices whose surroundings have changed to better places."""
         surface, picture = self._surface, self._picture
         for groups in independent_sets(surface.points, surface.origin.reshape(-1, 3)):
             self._do(
@@ -269,7 +269,7 @@ class Remesher:
         return make_workspace(self._picture.shape[0], self._picture.shape[2])
 
     def _compact(self, n_spare: int) -> None:
-        """Drop what is not in use, and make place for some more vertices."""
+        """Drop what is not in use, and add capacity for some more vertices."""
         surface = self._surface
         triangles = surface.origin.reshape(-1, 3)
         alive = triangles[:, 0] >= 0
@@ -290,7 +290,7 @@ def _open_surface(
     triangles: Int32Array,
     n_spare: int,
 ) -> Surface:
-    """A surface with place for some more vertices, its errors not measured yet."""
+    """A surface with capacity for some more vertices, its errors not measured yet."""
     n_points, n_triangles = len(points), len(triangles)
     n_edges = 3 * n_triangles
     more = 6 * n_spare

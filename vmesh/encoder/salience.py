@@ -39,7 +39,8 @@ def compute_salience(planes: SampleArray, gamma: float = 1.0) -> UInt16Array:
 
     References
     ----------
-    Zhao, Feng, Zhou 2013, section 2.1 and equation (1).
+    J. Zhao, J. Feng, B. Zhou, "Image vectorization using blue-noise sampling", Proc. SPIE 8664,
+    2013, section 2.1 and equation (1).
     """
     if not gamma > 0.0:
         raise ValueError(f"expected a gamma above 0, got {gamma}")

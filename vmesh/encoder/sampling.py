@@ -1,4 +1,4 @@
-"""Sampling: salience maps into blue-noise points, as many as were asked for."""
+"""Sampling: salience maps -> blue-noise points, as many as were asked for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vmesh.kernels.diffusion import diffuse
 from vmesh.mesh.canonical_order import raster_keys
 
 COUNT_TOLERANCE: Final = 0.01
-"""Relative error at which the search for a number of points stops; 0.02 is what is promised."""
+"""Relative error at which the search for a number of points stops; 0.02 is documented."""
 
 _UNIT_SCALE: Final = 1 << 16
 _MAX_SCALE: Final = 1 << 30  # Raises the faintest non-zero salience, 1/256 level, to the top.
@@ -52,7 +52,7 @@ class Samples:
     def vertices(self) -> Int32Array:
         """All points in raster order, shape (n, 2), int32, in half pixels.
 
-        Samples stand at pixel centres, at odd coordinates. Those in the outermost ring of pixels
+        Samples stand at pixel centres, at odd coordinates. Samples in the outermost ring of pixels
         give way to the points of the border, half a pixel from them.
         """
         y, x = np.nonzero(inner(self.classes))
@@ -108,8 +108,8 @@ def sample(
         Shape (c, h, w), uint16, in 1/256 level.
     n_points : int, optional
         Distinct points wanted, border included. The salience is scaled until their number is
-        within 2 %, and where a scaled map cannot give enough a constant is added to it. Without
-        it the map is sampled as it is.
+        within 2 %, and where a scaled map cannot give enough a constant is added to it. If left
+        out, the map is sampled as it is.
     sampler : {"multiclass", "channels"}
         Planes diffused together, no two taking the same pixel, or each for itself with the
         union of their points.

@@ -1,4 +1,4 @@
-"""The starting mesh: what is sampled of a picture or of its tiles, thinned as its goal allows."""
+"""The starting mesh: a sample of a picture or of its tiles, thinned as far as its goal allows."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _LEAST_CHOICE: Final = 3
 
 
 def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
-    """Vertices where they are sampled, as many as the settings ask for."""
+    """Draft of vertices where they are sampled, as many as the settings ask for."""
     height, width = image.shape[:2]
 
     def take(n_vertices: int) -> Samples:
@@ -48,7 +48,7 @@ def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
 
 
 def sampled_tiles(image: SampleArray, grid: Grid, settings: Settings, run: Run) -> TiledSamples:
-    """The same for the tiles of a picture."""
+    """Draft of a picture in tiles, its vertices where they are sampled in each."""
     wanted = _wanted_vertices(settings, grid.width, grid.height)
     if wanted is not None:
         share = wanted / (grid.width * grid.height)
@@ -65,7 +65,7 @@ def sampled_tiles(image: SampleArray, grid: Grid, settings: Settings, run: Run) 
 def thinned(
     image: SampleArray, settings: Settings, report: Callable[[], None], run: Run
 ) -> Remesher:
-    """The vertices of a dense sample that matter most."""
+    """Draft of the vertices that matter most in a dense sample of a picture."""
     height, width = image.shape[:2]
     wanted = _wanted_vertices(settings, width, height)
     start = _start(width, height, settings)
@@ -83,7 +83,7 @@ def thinned(
 def thinned_tiles(
     image: SampleArray, grid: Grid, settings: Settings, report: Callable[[], None], run: Run
 ) -> TiledRemesher:
-    """The same for the tiles of a picture, all thinned alike."""
+    """Draft of the vertices that matter most in dense samples of tiles, all thinned alike."""
 
     def proposed(job: tuple[Tile, int]) -> Remesher:
         tile, start = job
@@ -111,13 +111,13 @@ def _start(width: int, height: int, settings: Settings) -> int:
 
 
 def _proposed(image: SampleArray, settings: Settings, n_vertices: int, run: Run) -> Remesher:
-    """A dense sample of a picture."""
+    """Draft of a dense sample of a picture."""
     _, samples = propose(image, settings.with_goal(vertices=n_vertices))
     return Remesher(image, samples.vertices(), EFFORTS[settings.effort], run)
 
 
 def _had_choice(draft: Remesher) -> bool:
-    """Whether there was enough to choose from."""
+    """True if there were enough vertices to choose from."""
     return _LEAST_CHOICE * draft.n_vertices <= draft.n_proposed
 
 

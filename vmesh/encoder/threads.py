@@ -12,7 +12,7 @@ _SHARE: Final = 4096  # items of a job that needs no order
 _MAX_THREADS: Final = 16
 
 Run = Callable[[Callable[..., Any], Iterable[Any]], Iterator[Any]]
-"""Calls a function with each of some arguments; the results in their order, as they come."""
+"""A runner: calls a function with each of some arguments, and yields the results in their order."""
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Heat maps: how far two pictures are from each other, in colours of even steps.
+"""Heat maps: how far two pictures are apart at each pixel, in colours of even steps.
 
 The colours are those of *magma*, by Nathaniel Smith and Stéfan van der Walt for matplotlib (2015,
 CC0): equal steps look equal, and lightness alone tells the order, so that the map reads the same
@@ -43,9 +43,9 @@ def heat_colors(values: Float64Array) -> UInt8Array:
 
 
 def error_levels(first: UInt8Array, second: UInt8Array) -> Float64Array:
-    """Root of the mean square over red, green and blue of the difference, shape (h, w), in levels.
+    """Root mean square over the channels of the difference of two pictures, (h, w), in levels.
 
-    The pictures have shape (h, w, 3). The mean of the squares is what PSNR is made of.
+    The pictures have shape (h, w, 3). PSNR is computed from the mean of the same squares.
     """
     difference = first.astype(np.float64) - second
     levels: Float64Array = np.sqrt(np.mean(difference * difference, axis=2))
@@ -53,9 +53,9 @@ def error_levels(first: UInt8Array, second: UInt8Array) -> Float64Array:
 
 
 def scale_top(levels: Float64Array) -> int:
-    """Levels at the top of a scale: the power of two, of 4 to 256, that 99 % of the pixels reach.
+    """Levels at the top of a scale: the power of two, 4 to 256, that 99 % of pixels do not exceed.
 
-    Powers of two, so that sheets of similar pictures have the same scale and can be compared.
+    Sheets of similar pictures then have the same scale, and can be compared.
     """
     high = float(np.percentile(levels, _SHARE_BELOW))
     top = _LEAST_TOP

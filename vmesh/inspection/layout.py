@@ -31,7 +31,7 @@ _LEAST_WIDTH: Final = 240  # of a panel: what captions need
 _USUAL_WIDTH: Final = 480  # from there on letters grow with the panels
 _GREY: Final[Color] = (100, 100, 100)
 _PALE: Final[Color] = (208, 208, 208)
-_WIDE_BAR: Final = 180  # has room for five numbers
+_WIDE_BAR: Final = 180  # wide enough for five numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +55,14 @@ class Layout:
 
     @classmethod
     def of(cls, picture: View, n_panels: int) -> Layout:
-        """The layout of panels of one size."""
+        """Layout of panels of one size."""
         cell = max(picture.width, _LEAST_WIDTH)
         unit = max(1.0, cell / _USUAL_WIDTH)
         return cls(cell, picture, -(-n_panels // _COLUMNS), unit)
 
     @property
     def gap(self) -> int:
-        """Between panels, and around them."""
+        """Space between panels, and around them."""
         return self._long(18)
 
     @property
@@ -77,19 +77,19 @@ class Layout:
 
     @property
     def width(self) -> int:
-        """Of the sheet."""
+        """Width of the sheet."""
         return _COLUMNS * (self.cell + self.gap) + self.gap
 
     @property
     def height(self) -> int:
-        """Of the sheet."""
+        """Height of the sheet."""
         return self.top + self.n_rows * self.row
 
     def header(self, title: str, figures: str) -> Iterator[Item]:
         """The title, and the figures of the mesh."""
-        room = self.width - 2 * self.gap
-        yield self._label(self.gap, 36, title, 22, INK, room)
-        yield self._label(self.gap, 58, figures, 13, _GREY, room)
+        widest = self.width - 2 * self.gap
+        yield self._label(self.gap, 36, title, 22, INK, widest)
+        yield self._label(self.gap, 58, figures, 13, _GREY, widest)
 
     def panel(
         self, inspection: Inspection, region: Region, panel: Panel, number: int
@@ -104,9 +104,9 @@ class Layout:
         yield Frame(x, y, *size, _PALE)
         below = (y + size[1]) / self.unit
         has_bar = panel.draw is draw_error
-        room = self.cell / (2 if has_bar else 1)
-        yield self._label(x, below + 20, panel.name, 15, INK, room)
-        yield self._label(x, below + 38, panel.detail, 12, _GREY, room)
+        widest = self.cell / (2 if has_bar else 1)
+        yield self._label(x, below + 20, panel.name, 15, INK, widest)
+        yield self._label(x, below + 38, panel.detail, 12, _GREY, widest)
         if has_bar:
             yield from self._bar(x, below, error_top(inspection, view))
 
@@ -127,11 +127,11 @@ class Layout:
             yield Label(place, self.unit * (below + 38), text, 12 * self.unit, _GREY, align)
 
     def _label(
-        self, x: float, y: float, text: str, size: float, color: Color, room: float
+        self, x: float, y: float, text: str, size: float, color: Color, widest: float
     ) -> Label:
         """A label that fits a width; `y` and `size` grow with the unit."""
         size *= self.unit
-        return Label(x, self.unit * y, shortened(text, size, room), size, color)
+        return Label(x, self.unit * y, shortened(text, size, widest), size, color)
 
     def _long(self, length: float) -> int:
         return round(length * self.unit)

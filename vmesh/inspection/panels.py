@@ -1,4 +1,4 @@
-"""Panels of a sheet: which drawings are side by side, with their names and figures."""
+"""Panels of a sheet: the drawings that are side by side, with their names and figures."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import Final
 from vmesh.inspection.sheet.items import View
 from vmesh.limits import MAX_SIDE
 
-# What is smaller is enlarged by a whole number, what is larger is reduced.
+# A smaller region is enlarged by a whole number, a larger one is reduced.
 _SMALLEST: Final = 400
 _LARGEST: Final = 1000
 
@@ -55,12 +55,12 @@ class Region:
             )
 
     def view(self, scale: float, x: int = 0, y: int = 0) -> View:
-        """The region at a place of a sheet."""
+        """View of the region at a place of a sheet."""
         width, height = (max(1, round(side * scale)) for side in (self.width, self.height))
         return View(x, y, width, height, self.left, self.top, self.width, self.height)
 
     def good_scale(self, longest_side: int) -> float:
-        """Units of a sheet for a pixel, of a picture with this longest side."""
+        """Units of a sheet for a pixel that suit a picture with this longest side."""
         own = max(self.width, self.height)
         if own >= _SMALLEST:
             return min(1.0, _LARGEST / own)

@@ -15,7 +15,7 @@ from vmesh.inspection.views import DRAWINGS
 def view_sheet(
     inspection: Inspection, show: str, region: Region | None = None, scale: float | None = None
 ) -> Sheet:
-    """One stage of `DRAWINGS` alone, else as :func:`stages_sheet`.
+    """Sheet of one stage of `DRAWINGS` alone; region and scale as for :func:`stages_sheet`.
 
     Unless a scale is given, the whole picture is drawn at its own.
     """
@@ -34,7 +34,7 @@ def stages_sheet(
     region: Region | None = None,
     scale: float | None = None,
 ) -> Sheet:
-    """All stages of an encoding; or, of a region, what enlargements keep sharp.
+    """Sheet of all stages of an encoding; or, for a region, of enlargements that stay sharp.
 
     Parameters
     ----------

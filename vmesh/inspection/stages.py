@@ -1,4 +1,4 @@
-"""An encoding with all that is seen on the way."""
+"""An encoding with its intermediate results."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Inspection:
         vertices have moved since they were sampled.
     mesh : Mesh
     limits : Limits
-        On what is drawn of it.
+        Limits on what is drawn of it.
     """
 
     photograph: SampleArray
@@ -56,12 +56,12 @@ class Inspection:
 
     @cached_property
     def errors(self) -> Float64Array:
-        """Root of the mean square of the difference of both, shape (h, w), in levels."""
+        """Root mean square of the difference of photograph and mesh, shape (h, w), in levels."""
         return error_levels(self.original, self.rendered)
 
     @cached_property
     def psnr(self) -> float:
-        """Of the mesh, over RGB, in dB."""
+        """PSNR of the mesh over RGB, in dB."""
         return psnr(self.original, self.rendered)
 
     @cached_property
@@ -78,7 +78,7 @@ def inspect_encoding(
     limits: Limits = DEFAULT_LIMITS,
     progress: Progress | None = None,
 ) -> Inspection:
-    """Encode a photograph, and keep what is seen on the way.
+    """Encode a photograph, and keep the intermediate results.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def inspect_encoding(
         As for :func:`vmesh.encode`.
     settings : Settings
     limits : Limits
-        On the mesh and on what is drawn of it.
+        Limits on the mesh and on what is drawn of it.
     """
     salience, samples = propose(as_image(photograph), settings)
     mesh = encode_with(photograph, settings, metadata=metadata, progress=progress)

@@ -1,4 +1,4 @@
-"""What is drawn of each stage of an encoding, in a place of a sheet."""
+"""Drawings of the stages of an encoding, each in a place of a sheet."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from vmesh.mesh import Mesh
 
 INK: Final[Color] = (32, 32, 32)
 _LINE: Final[Color] = (40, 90, 160)
-_SATURATED: Final = 220  # samples of a class: what its plane was, as in the paper's figures
+_SATURATED: Final = 220  # of the plane's own channel, as in the figures of Zhao, Feng and Zhou
 _LINE_WIDTH: Final = 0.4  # at the picture's own scale
 _DOT_WIDTH: Final = 1.2
 _MOST_WEIGHT: Final = 4.0
@@ -40,14 +40,14 @@ def draw_bicubic(inspection: Inspection, view: View) -> Iterator[Item]:
 
 
 def draw_salience(inspection: Inspection, view: View) -> Iterator[Item]:
-    """The salience in colours, dark where there is much; alpha left out."""
+    """The salience in colours, dark where it is large; alpha left out."""
     levels = 255 - (np.minimum(inspection.salience, 255 * 256) >> 8).astype(np.uint8)
     planes = levels[:3] if len(levels) >= 3 else np.repeat(levels[:1], 3, axis=0)
     yield _shown(planes.transpose(1, 2, 0), view)
 
 
 def draw_points(inspection: Inspection, view: View) -> Iterator[Item]:
-    """The vertices; those that are samples in the colours of their planes."""
+    """The vertices; samples are in the colours of their planes."""
     points = inspection.mesh.points
     colors = _point_colors(inspection)
     for color in np.unique(colors, axis=0):
@@ -58,7 +58,7 @@ def draw_points(inspection: Inspection, view: View) -> Iterator[Item]:
 
 
 def draw_triangles(inspection: Inspection, view: View) -> Iterator[Item]:
-    """The edges of the mesh; over pale pixels of the photograph where that is enlarged."""
+    """The edges of the mesh, over pale pixels of the photograph if that is enlarged."""
     if view.scale[0] > 1:
         squares = _shown(inspection.original, view)
         pale = np.rint(255 - _PALE * (255.0 - squares.array)).astype(np.uint8)
@@ -73,7 +73,7 @@ def draw_render(inspection: Inspection, view: View) -> Iterator[Item]:
 
 
 def draw_error(inspection: Inspection, view: View) -> Iterator[Item]:
-    """How far the mesh is from the photograph, in colours up to :func:`error_top`."""
+    """The error of the mesh at each pixel, in colours up to :func:`error_top`."""
     levels = _part(inspection.errors, view) / error_top(inspection, view)
     colors = heat_colors(levels)
     yield Pixels(view.x, view.y, _fitted(colors, view))
@@ -110,24 +110,24 @@ def _point_colors(inspection: Inspection) -> UInt8Array:
     last = (mesh.width - 1, mesh.height - 1)
     x, y = np.minimum(mesh.vertices // mesh.unit, last).T
     planes = np.stack([classes[y, x] >> i & 1 for i in range(3)], axis=1)
-    # None: a point of the border; all of them would be too pale.
+    # A point of the border has no plane; the colour of all three would be too pale.
     is_mixed = np.isin(planes.sum(axis=1), (0, 3))
     colors = np.where(is_mixed[:, None], INK, planes * _SATURATED)
     return colors.astype(np.uint8)
 
 
 def _weight(view: View) -> float:
-    """How much wider strokes are than at the picture's own scale."""
+    """Factor by which strokes are wider than at the picture's own scale."""
     return min(float(view.scale[0] ** 0.5), _MOST_WEIGHT)
 
 
 def _part(array: Samples, view: View) -> Samples:
-    """What a view shows of an array of shape (h, w, ...)."""
+    """The part of an array of shape (h, w, ...) that a view shows."""
     return array[view.top : view.top + view.down, view.left : view.left + view.across]
 
 
 def _shown(picture: UInt8Array, view: View) -> Pixels:
-    """What a view shows of a picture of shape (h, w, 3)."""
+    """The part of a picture of shape (h, w, 3) that a view shows, filling the view."""
     return Pixels(view.x, view.y, _fitted(_part(picture, view), view))
 
 

@@ -16,7 +16,9 @@ order, so it is unique.
 References
 ----------
 D. A. Sinclair, "S-hull: a fast radial sweep-hull routine for Delaunay triangulation",
-arXiv:1604.01428, 2016. C. L. Lawson, "Software for C1 surface interpolation", 1977.
+arXiv:1604.01428, 2016. C. L. Lawson, "Software for C1 surface interpolation", Mathematical Software
+III, 1977. H. Edelsbrunner, E. P. Mücke, "Simulation of simplicity", ACM Transactions on Graphics
+9(1), 1990: ties.
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ from vmesh.kernels.predicates import must_flip, orient
 
 FLIPS_PER_POINT = 64
 FLIPS = 1 << 20
-"""Flips that any triangulation may take, and those for each of its points."""
+"""Flips that any triangulation may take, beside `FLIPS_PER_POINT` for each of its points."""
 
 COINCIDENT = -1
 TOO_MANY_FLIPS = -2
@@ -55,7 +57,7 @@ def legalize(
     hull_edge : ndarray
         Shape (n,), int64: the hull's half-edge that starts at a vertex; flips keep it right.
     stack : ndarray
-        Room for as many edges as the triangulation has triangles: those on it face the new point.
+        Workspace for as many edges as there are triangles; the edges on it face the new point.
     """
     n_flips = 0
     size = 1
@@ -82,7 +84,7 @@ def legalize(
 
 @inner_kernel
 def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
-    """Number in 0 .. n_keys - 1 that grows with the direction of (dx, dy) around the circle."""
+    """Number in 0 .. n_keys - 1 that grows with the direction of (dx, dy) around the origin."""
     length = abs(dx) + abs(dy)
     if length == 0.0:
         return 0
@@ -95,7 +97,7 @@ def pseudo_angle(dx: float, dy: float, n_keys: int) -> int:
 def sweep(
     points: Int64Array, order: Int64Array, cx: float, cy: float, triangles: Int64Array
 ) -> int:
-    """Number of canonical Delaunay triangles of points, written to `triangles`.
+    """Number of the canonical Delaunay triangles of points, which are written to `triangles`.
 
     Parameters
     ----------
@@ -106,7 +108,7 @@ def sweep(
     cx, cy : float
         The centre.
     triangles : ndarray
-        Shape (max(2 n, 1), 3), int64: capacity for the result, positively oriented.
+        Shape (max(2 n, 1), 3), int64, written: the triangles, positively oriented.
 
     Returns
     -------
@@ -126,7 +128,7 @@ def sweep(
     n_keys = int(np.ceil(np.sqrt(n_points)))
     hull_hash = np.full(n_keys, -1, np.int64)
 
-    # The first three points that are not on a line. Those passed over lie on the line of the
+    # The first three points that are not on a line. The points passed over lie on the line of the
     # first two, beyond their segment, so they are outside the first triangle as well.
     a, b = order[0], order[1]
     if points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]:
@@ -174,7 +176,7 @@ def sweep(
             w = hull_next[v]
             if v == start:
                 return COINCIDENT
-        # ... or before it, if the hint was in the midst of those it sees.
+        # ... or before it, if the hint was in the midst of the edges that it sees.
         if v == start:
             u = hull_prev[v]
             while orient(points, u, v, p) < 0:
@@ -218,7 +220,7 @@ def flip_to_delaunay(
 
     An edge that a flip removes never comes back: every flip lowers the surface that the
     triangulation spans over the paraboloid (Lawson). So the flips, read backwards, lead from the
-    Delaunay triangulation to this one, and each edge is removed once at most.
+    Delaunay triangulation to this one, and each edge is removed at most once.
 
     Parameters
     ----------
@@ -227,13 +229,13 @@ def flip_to_delaunay(
     origin, twin : ndarray
         Shape (3 m,), int64: half-edges; overwritten.
     created, removed : ndarray
-        Room for the flips: the edge that each one made and the one that it took away, the lower
-        vertex in the upper 32 bits.
+        Shape (k,), int64, written: the edge that each flip made and the one that it took away, the
+        lower vertex in the upper 32 bits.
 
     Returns
     -------
     int
-        Number of flips, TOO_MANY_FLIPS if there is no room for them.
+        Number of flips, TOO_MANY_FLIPS if there are more than k.
     """
     n_edges = origin.shape[0]
     stack = np.empty(n_edges, np.int64)
@@ -290,7 +292,7 @@ def delaunay(vertices: Int32Array) -> Int32Array:
         If two points coincide.
     LimitError
         If the points are arranged so that it would take more than FLIPS_PER_POINT edge flips for
-        each: photographs take about four, a hostile file could ask for a number that is squared.
+        each: photographs take about four, a hostile file could ask for the square of their number.
     """
     points = vertices.astype(np.int64)
     if len(points) < 3:

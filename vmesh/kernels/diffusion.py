@@ -17,7 +17,9 @@ References
 ----------
 B. Zhou, X. Fang, "Improving mid-tone quality of variable-coefficient error diffusion using
 threshold modulation", SIGGRAPH 2003. V. Ostromoukhov, "A simple and efficient error-diffusion
-algorithm", SIGGRAPH 2001.
+algorithm", SIGGRAPH 2001. L.-Y. Wei, "Multi-class blue noise sampling", SIGGRAPH 2010: the aim, not
+the method. G. Marsaglia, "Xorshift RNGs", Journal of Statistical Software 8(14), 2003: the random
+thresholds.
 """
 
 from __future__ import annotations
@@ -63,7 +65,8 @@ def diffuse(
     n_classes, height, width = salience.shape
     one = 255 * 256
     classes = np.zeros((height, width), np.uint8)
-    # What the row above passed down, what this row passes down; one column more on each side.
+    # Errors that the row above passed down and that this row passes down, a column wider on each
+    # side.
     above = np.zeros((width + 2, n_classes), np.int64)
     below = np.zeros((width + 2, n_classes), np.int64)
     values = np.zeros(n_classes, np.int64)
@@ -95,7 +98,7 @@ def diffuse(
                 corrected += values[i]
                 if values[i] > values[chosen]:
                     chosen = i
-            # xorshift32 (Marsaglia 2003)
+            # xorshift32
             random ^= (random << 13) & 0xFFFFFFFF
             random ^= random >> 17
             random ^= (random << 5) & 0xFFFFFFFF

@@ -10,7 +10,7 @@
 
 References
 ----------
-O. Devillers, "On deletion in Delaunay triangulations", 1999.
+O. Devillers, "On deletion in Delaunay triangulations", Symposium on Computational Geometry, 1999.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def fill_star(
     ears: Int64Array,
     count: int,
 ) -> None:
-    """Put the triangles of some ears in place of the first of a star.
+    """Put the triangles of some ears in place of the first triangles of a star.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Half-edges of a triangle mesh: walks around them, and the changes that all meshing is made of.
+"""Half-edges of a triangle mesh: walks around them, and the edits that all meshing is made of.
 
 Triangle t has the half-edges 3t, 3t+1, 3t+2. ``origin[e]``, which is ``triangles.flat[e]``, is the
 vertex that half-edge e leaves, and ``twin[e]`` the half-edge on its other side, -1 on the border::
@@ -10,6 +10,11 @@ vertex that half-edge e leaves, and ``twin[e]`` the half-edge on its other side,
             \\  |  /
              \\ | /
                d
+
+References
+----------
+S. Campagna, L. Kobbelt, H.-P. Seidel, "Directed edges: a scalable representation for triangle
+meshes", Journal of Graphics Tools 3(4), 1998: half-edges that are numbered by their triangles.
 """
 
 from __future__ import annotations
@@ -47,7 +52,7 @@ def link(twin: Int64Array, e: Index, f: Index) -> None:
 
 @inner_kernel
 def place_triangle(origin: Int64Array, leaving: Int64Array, t: int, a: int, b: int, c: int) -> None:
-    """Make t the triangle a, b, c; what is across its sides is left as it was."""
+    """Make t the triangle a, b, c; the twins of its sides are left as they were."""
     e = 3 * t
     origin[e], origin[e + 1], origin[e + 2] = a, b, c
     leaving[a], leaving[b], leaving[c] = e, e + 1, e + 2
@@ -124,8 +129,8 @@ def find_twins(triangles: Int32Array, n_vertices: int) -> Int64Array:
         leaving[filled[origin[e]]] = e
         filled[origin[e]] += 1
     twin = np.full(origin.shape[0], -1, np.int64)
-    # Those that leave a vertex, by their ends; what is left of other vertices starts elsewhere.
-    # So a vertex of very many triangles costs no more than its share.
+    # The half-edges that leave a vertex, by their ends; entries of earlier vertices are told apart
+    # by where they start. So a vertex of very many triangles costs no more than its share.
     to = np.full(n_vertices, -1, np.int64)
     for v in range(n_vertices):
         for i in range(starts[v], starts[v + 1]):

@@ -1,12 +1,13 @@
 """A Kirkpatrick hierarchy: layers of independent vertices taken out of a Delaunay triangulation.
 
-Vertices of which no two are neighbours are taken out at once, the holes filled, and so on with what
-is left. In the other direction every vertex comes into the middle of the few that were around it.
+An independent set, of which no two vertices are neighbours, is taken out at once, the holes are
+filled, and so on with what is left. In the reverse order every vertex is inserted among the few
+that surrounded it.
 
 References
 ----------
 D. Kirkpatrick, "Optimal search in planar subdivisions", SIAM Journal on Computing 12(1), 1983.
-O. Devillers, "On deletion in Delaunay triangulations", 1999.
+O. Devillers, "On deletion in Delaunay triangulations", Symposium on Computational Geometry, 1999.
 """
 
 from __future__ import annotations
@@ -55,8 +56,8 @@ def remove_independent_sets(
     """Layers of independent vertices, taken out of a triangulation until none is left.
 
     In each layer, in raster order, every vertex is taken that has no more than `max_triangles`
-    triangles and of whose neighbours none has been taken. What is left is the canonical Delaunay
-    triangulation of the vertices left.
+    triangles and no neighbour that has been taken. What is left is the canonical Delaunay
+    triangulation of the remaining vertices.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def remove_independent_sets(
     taken : ndarray
         Shape (k,), int32: layer after layer, each in raster order.
     neighbours : ndarray
-        Shape (k, max_triangles + 1), int32: those of each when its layer was taken.
+        Shape (k, max_triangles + 1), int32: neighbours of each when its layer was taken.
     counts : ndarray
         Shape (k,), int64: how many neighbours each has.
     ends : ndarray

@@ -1,4 +1,4 @@
-"""How kernels are compiled: one decorator, so that the flags stand in one place."""
+"""The compilation of kernels: a decorator for each kind, so that the flags stand in one place."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ def kernel(function: Function) -> Function:
 
 
 def lean_kernel(function: Function) -> Function:
-    """A kernel that makes no arrays, for other kernels to call in their loops."""
+    """Compile a kernel that makes no arrays, for other kernels to call in their loops."""
     return _cached(function, _LEAN_OPTIONS)
 
 
 def inner_kernel(function: Function) -> Function:
-    """A lean kernel that nothing but kernels calls: no way in from Python.
+    """Compile a lean kernel that only kernels call: it has no entry point for Python.
 
-    Not making one takes up to half off the time that its compilation takes. A call from Python
-    ends the process.
+    Leaving that out takes up to half off the time of its compilation. A call from Python ends the
+    process.
     """
     return cast("Function", njit(**_INNER_OPTIONS)(function))
 

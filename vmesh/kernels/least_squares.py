@@ -1,13 +1,14 @@
 """Conjugate gradients on the normal equations of a triangle mesh, matrix-free and ordered.
 
 The matrix is the sum of a 3 x 3 block per triangle, as in the mass matrix of linear finite
-elements; scaled by its diagonal it is so well conditioned that some twenty steps suffice. Own code
-rather than a library's, because sums run in a fixed order: the result does not depend on the
-number of threads of an underlying linear-algebra library.
+elements; scaled by its diagonal (the Jacobi preconditioner) it is so well conditioned that some
+twenty steps suffice. Own code rather than a library's, because sums run in a fixed order: the
+result does not depend on the number of threads of an underlying linear-algebra library.
 
 References
 ----------
-M. R. Hestenes, E. Stiefel, "Methods of conjugate gradients for solving linear systems", 1952.
+M. R. Hestenes, E. Stiefel, "Methods of conjugate gradients for solving linear systems", Journal of
+Research of the National Bureau of Standards 49(6), 1952.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def solve(
     moments : ndarray
         Shape (n, c), float64: the right-hand sides.
     ridge : float
-        Weight that holds vertices without pixels at `start`.
+        Weight that keeps vertices without pixels at `start` (Tikhonov regularisation).
     start : ndarray
         Shape (n, c), float64: where the iteration starts too.
     tolerance : float

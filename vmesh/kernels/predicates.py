@@ -1,7 +1,7 @@
 """Predicates on points of a lattice: on which side of a line, and in or out of a circle.
 
 The exact ones decide what writers and readers have to agree on. The one in floating point stands
-beside its exact twin: it is faster, and good where an error costs nothing but a little quality.
+beside its exact counterpart: it is faster, and good where an error costs only a little quality.
 
 All take integer coordinates. The exact in-circle test is for sides of at most 2**19: a cross
 product then fits 64 bits, and the determinant is formed in two 64-bit words.
@@ -10,7 +10,7 @@ References
 ----------
 J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
 Discrete & Computational Geometry 18, 1997: the predicates and their names. H. Edelsbrunner, E. P.
-Muecke, "Simulation of simplicity", ACM Transactions on Graphics 9(1), 1990: ties broken by symbolic
+Mücke, "Simulation of simplicity", ACM Transactions on Graphics 9(1), 1990: ties broken by symbolic
 perturbation.
 """
 
@@ -66,9 +66,9 @@ def in_circle(ax: int, ay: int, bx: int, by: int, cx: int, cy: int, dx: int, dy:
 
 @inner_kernel
 def in_circle_float(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
-    """True if point d is inside the circle through the positive triangle a, b, c, nearly always.
+    """True if point d is inside the circle of the positive triangle a, b, c, but for rounding.
 
-    In floating point: exact for differences below 5,000.
+    Exact for coordinate differences below 5,000.
     """
     ax = float(points[a, 0] - points[d, 0])
     ay = float(points[a, 1] - points[d, 1])
@@ -106,7 +106,7 @@ def must_flip(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
 def is_within(points: Int64Array, a: int, b: int, c: int, d: int) -> bool:
     """True if d is inside the circle of the positive triangle a, b, c, by the rule of `must_flip`.
 
-    That is, if the triangle cannot be one of the canonical triangulation beside d.
+    The triangle then cannot be one of a canonical triangulation in which d is a vertex.
     """
     # On the circle, d is across one of the edges, which it is on the outside of: turn it to b-c.
     for _ in range(3):

@@ -1,4 +1,4 @@
-"""Colour levels chosen by rate and distortion: coordinate descent on a quadratic form.
+"""Rate-distortion optimised quantisation of colours: coordinate descent on a quadratic form.
 
 The squared error of a rendered mesh is a quadratic function of the colours at its vertices, and the
 bits of a level follow from its distance to the mean of its parents. One level is changed at a time,
@@ -11,7 +11,9 @@ by one or two, where that lowers error + lambda * bits::
 References
 ----------
 K. Ramchandran, M. Vetterli, "Rate-distortion optimal fast thresholding with complete JPEG/MPEG
-decoder compatibility", 1994: choosing levels by both. The descent is Gauss-Seidel on integers.
+decoder compatibility", IEEE Transactions on Image Processing 3(5), 1994: levels chosen by both.
+J. Besag, "On the statistical analysis of dirty pictures", Journal of the Royal Statistical Society
+B 48(3), 1986: coordinate descent over integers, there iterated conditional modes.
 """
 
 from __future__ import annotations
@@ -104,14 +106,14 @@ def descend(
     highest: Int32Array,
     levels: Int64Array,
 ) -> int:
-    """One sweep over all levels, finest vertices first; how many were changed.
+    """Number of levels that a sweep over all of them has changed, finest vertices first.
 
     Parameters
     ----------
     order, starts : ndarray
         The hierarchy.
     child_starts, child_places, child_entries : ndarray
-        For each vertex the places of those whose parent it is, and which entry of `shares`.
+        For each vertex the places of its children in the order, and its entries in `shares`.
     shares, means, spreads : ndarray
         As :func:`predict` gives them; `means` follow the changes.
     table : ndarray

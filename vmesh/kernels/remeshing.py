@@ -18,9 +18,14 @@ and ``leaving`` -1. Coordinates are in half pixels: pixel (x, y) has its centre 
 References
 ----------
 L. Demaret, N. Dyn, A. Iske, "Image compression by linear splines over adaptive triangulations",
-Signal Processing 86(7), 2006: removal by least error. N. Dyn, D. Levin, S. Rippa, "Data dependent
-triangulations for piecewise linear interpolation", 1990: flips. O. Devillers, "On deletion in
-Delaunay triangulations", 1999: filling a hole by ears.
+Signal Processing 86(7), 2006: removal by least error. M. Garland, P. S. Heckbert, "Fast polygonal
+approximation of terrains and height fields", CMU-CS-95-181, 1995: insertion at the largest error.
+G. H. Golub, V. Pereyra, "The differentiation of pseudo-inverses and nonlinear least squares
+problems whose variables separate", SIAM Journal on Numerical Analysis 10(2), 1973: moves, with the
+best colour for each place. N. Dyn, D. Levin, S. Rippa, "Data dependent triangulations for piecewise
+linear interpolation", IMA Journal of Numerical Analysis 10(1), 1990: flips. O. Devillers, "On
+deletion in Delaunay triangulations", Symposium on Computational Geometry, 1999: filling a hole by
+ears.
 """
 
 from __future__ import annotations
@@ -87,7 +92,7 @@ class Surface(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Arrays that the kernels write to on the way: the star of a vertex, its filling, and sums."""
+    """Scratch arrays of the kernels: the star of a vertex, the filling of its hole, and sums."""
 
     ring: Int64Array
     outer: Int64Array
@@ -245,7 +250,7 @@ def error_at(
 
     The star's rim is ``work.ring``, of which the first `n_sides` sides count; infinite if one of
     its triangles were not positive, or as soon as the error is more than `limit`. ``work.sums``
-    holds what the colour follows from, ``work.side_sums`` the same of the sides up to each.
+    holds the sums that the colour follows from, ``work.side_sums`` their running totals by side.
     """
     points, ring, sums = surface.points, work.ring, work.sums
     for i in range(n_sides):
@@ -271,7 +276,7 @@ def error_at(
 
 @inner_kernel
 def take_color(surface: Surface, work: Workspace, v: int) -> None:
-    """Give vertex v the best colour by ``work.sums``, if its triangles hold a pixel to tell."""
+    """Give vertex v the best colour by ``work.sums``, if its triangles hold any pixel."""
     if work.sums[1] > _RIDGE:
         for z in range(surface.colors.shape[1]):
             surface.colors[v, z] = work.sums[2 + z] / (work.sums[1] + _RIDGE)
@@ -279,7 +284,7 @@ def take_color(surface: Surface, work: Workspace, v: int) -> None:
 
 @kernel
 def measure(surface: Surface, image: UInt8Array, work: Workspace, first: int, last: int) -> None:
-    """Compute the errors of the triangles from `first` up to `last`, excluded, anew."""
+    """Recompute the errors of the triangles from `first` up to `last`, which is excluded."""
     for t in range(first, last):
         a, b, c = surface.origin[3 * t], surface.origin[3 * t + 1], surface.origin[3 * t + 2]
         surface.errors[t] = triangle_error(surface, image, work, a, b, c) if a >= 0 else 0.0
@@ -301,7 +306,7 @@ def set_triangle(
 def update_triangle(
     surface: Surface, image: UInt8Array, work: Workspace, t: int, a: int, b: int, c: int
 ) -> None:
-    """Measure triangle t, which became a, b, c, and note that its corners have changed around."""
+    """Measure triangle t, which became a, b, c, and mark its corners as dirty."""
     surface.dirty[a] = surface.dirty[b] = surface.dirty[c] = True
     surface.errors[t] = triangle_error(surface, image, work, a, b, c)
 
@@ -341,7 +346,7 @@ def collect_ring(surface: Surface, work: Workspace, v: int) -> tuple[int, int]:
 def removal_cost(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> float:
     """Squared error that the removal of a vertex would add.
 
-    Infinite for a corner of the canvas and where the hole cannot be filled.
+    It is infinite for a corner of the canvas and where the hole cannot be filled.
     """
     ring, ears = work.ring, work.ears
     size, n_sides = collect_ring(surface, work, v)
@@ -363,7 +368,7 @@ def removal_cost(surface: Surface, image: UInt8Array, work: Workspace, v: int) -
 
 @inner_kernel
 def remove(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> int:
-    """Remove a vertex and fill the hole; the ring keeps its neighbours, whose number is given."""
+    """Remove a vertex and fill the hole; returns the number of its neighbours, in ``work.ring``."""
     points, origin, twin, leaving = surface.points, surface.origin, surface.twin, surface.leaving
     ring, star, ears = work.ring, work.star, work.ears
     size, n_sides = collect_ring(surface, work, v)
@@ -423,10 +428,10 @@ def thin(
     n_remove: int,
     max_cost: float,
 ) -> int:
-    """Remove the vertices that cost least, one by one; how many went.
+    """Remove the vertices that cost least, one by one; returns how many.
 
     A heap yields the cheapest one. The costs of its neighbours are out of date when it has gone;
-    since they hardly ever fall, they are computed anew when they come up as the cheapest.
+    since they hardly ever fall, they are recomputed when they come up as the cheapest.
 
     Parameters
     ----------
@@ -512,7 +517,7 @@ def worst_pixel(
 def best_insertion(
     surface: Surface, image: UInt8Array, work: Workspace, t: int
 ) -> tuple[float, int, int]:
-    """What a new vertex in triangle t would gain, and where: its middle or its worst pixel."""
+    """Gain of a new vertex in triangle t, and its place: the middle or the worst pixel."""
     points, errors, ring = surface.points, surface.errors, work.ring
     for i in range(4):
         ring[i] = surface.origin[3 * t + i % 3]
@@ -558,7 +563,7 @@ def propose_insertions(
     gains: Float64Array,
     places: Int64Array,
 ) -> None:
-    """What a new vertex would gain in each of some triangles, and where, if it is not known yet.
+    """Find the gain and the place of a new vertex in each triangle for which they are not known.
 
     Parameters
     ----------
@@ -590,7 +595,7 @@ def insert(
     places: Int64Array,
     n_insert: int,
 ) -> int:
-    """Insert vertices into triangles as long as there are any not in use; how many were inserted.
+    """Insert vertices into triangles while any are not in use; returns how many were inserted.
 
     No two go into triangles that share a side: a second call sees what the first one changed.
 
@@ -648,7 +653,7 @@ def insert(
 
 @inner_kernel
 def may_step(x: int, dx: int, far: int) -> bool:
-    """Whether a coordinate may change: on the border not at all, elsewhere as far as the border."""
+    """True if a coordinate may change by dx: it must neither leave the border nor reach it."""
     return dx == 0 or (0 < x < far and 0 < x + dx < far)
 
 
@@ -656,16 +661,16 @@ def may_step(x: int, dx: int, far: int) -> bool:
 def predict_step(
     surface: Surface, image: UInt8Array, work: Workspace, v: int, n_sides: int
 ) -> None:
-    """What a step of vertex v would change the error of its star by, into ``work.predictions``.
+    """Predict the change of the error of vertex v's star for each step, in ``work.predictions``.
 
-    From the sums that :func:`error_at` left for the place where the vertex is. Where its triangles
-    have gradients g and a step d takes it away with its colour k, a pixel with weight w changes by
-    w (k' - g d). In squares, with the best change of the colour k', that is
+    It follows from the sums that :func:`error_at` left for the place where the vertex is. Where its
+    triangles have gradients g and a step d moves it with its colour k, a pixel with weight w
+    changes by w (k' - g d). In squares, with the best change of the colour k', that is
 
         2 b d + d H d,   b = sum of g (w r),   H = sum of ww g g - (sum of ww g)^2 / sum of ww,
 
-    a step of Gauss and Newton's method, of which any whole step is taken and not only the best:
-    the picture is not as smooth as that.
+    the quadratic model of the Gauss-Newton method with the colour eliminated (variable projection).
+    It is evaluated for every step and not only minimised: the picture is not as smooth as that.
     """
     points, colors, ring, side_sums = surface.points, surface.colors, work.ring, work.side_sums
     b_x = b_y = h_xx = h_xy = h_yy = 0.0
@@ -715,8 +720,8 @@ def step(
 ) -> float:
     """Error after vertex v was moved to a better one of the places that are predicted to be best.
 
-    The first that is better, by the predicted decrease. If none is, the vertex stays and the error
-    is `least`, what it was.
+    They are tried by their predicted decrease, and the first that is better is taken. If none is,
+    the vertex stays and the error is `least`, as it was.
     """
     points, predictions = surface.points, work.predictions
     predict_step(surface, image, work, v, n_sides)
@@ -740,12 +745,12 @@ def step(
 
 @kernel
 def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int64Array) -> int:
-    """Move each dirty vertex of some to better places nearby, step by step; how many moved.
+    """Move the dirty ones of some vertices to better places, step by step; returns how many moved.
 
     The error of a place is that of the star in the best colour for it. Vertices on the border stay
-    on their side, corners where they are. Of what is around a vertex its triangles' errors are
-    written, and that the neighbours are dirty; so vertices without a common edge can be moved
-    at the same time.
+    on their side, corners where they are. Around a vertex only the errors of its triangles and the
+    marks of its neighbours are written, so vertices without a common edge can be moved at the same
+    time.
     """
     points, leaving, dirty = surface.points, surface.leaving, surface.dirty
     right, bottom = 2 * image.shape[1], 2 * image.shape[0]
@@ -781,9 +786,9 @@ def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int
 
 @kernel
 def flip_edges(surface: Surface, image: UInt8Array, work: Workspace, charge: float) -> int:
-    """Flip each edge once if that lowers the error; how many were flipped.
+    """Flip each edge at most once, if that lowers the error; returns how many were flipped.
 
-    An edge that is not Delaunay is charged with what it costs to code it.
+    An edge that is not Delaunay is charged what it costs to code it.
     """
     points, origin, twin, errors = surface.points, surface.origin, surface.twin, surface.errors
     flipped = 0

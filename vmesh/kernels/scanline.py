@@ -2,8 +2,8 @@
 
 Vertices are integers in 1/256 pixel; the centre of pixel (x, y) is at (256 x + 128, 256 y + 128).
 A pixel belongs to the triangle that holds its centre. A centre on an edge belongs to the triangle
-on the edge's right or, where the edge is level, below it (the top-left rule), so that triangles
-which share their edges cover every centre exactly once::
+on the edge's right or, where the edge is horizontal, below it (the top-left rule), so that
+triangles which share their edges cover every centre exactly once::
 
             0                 rows y with  y0 <= centre < y2
            /|
@@ -18,6 +18,13 @@ of the three parts and det their sum: an affine function of x and y with rationa
 is evaluated in floating point with a bias that is larger than every rounding error and smaller
 than the smallest distance of a fraction n/det from an integer it does not equal, so the result is
 that of exact arithmetic; triangles too large for that argument are stepped in integers.
+
+References
+----------
+J. E. Bresenham, "Algorithm for computer control of a digital plotter", IBM Systems Journal 4(1),
+1965. H. Gouraud, "Continuous shading of curved surfaces", IEEE Transactions on Computers C-20(6),
+1971: linear interpolation of the corners' colours. Microsoft, "Rasterization rules", Direct3D 11:
+the top-left rule.
 """
 
 from __future__ import annotations
@@ -60,10 +67,10 @@ def corners(vertices: Int64Array, i: int, j: int, k: int) -> tuple[int, int, int
 
 @inner_kernel
 def column_at(ax: int, ay: int, bx: int, by: int, y: int) -> tuple[int, int, int, int, int]:
-    """Where the edge a-b, a above b, meets the centres of row y.
+    """Column at which the edge a-b, a above b, meets the centres of row y.
 
-    Returns the column as a fraction ``quotient + remainder / divisor`` and what to add to
-    quotient and remainder for the next row.
+    Returns it as a fraction ``quotient + remainder / divisor``, and what to add to quotient and
+    remainder for the next row.
     """
     rise = by - ay
     run = bx - ax

@@ -10,15 +10,17 @@
                             1   b, c, d
                             2   a, c, d
 
-Each triangle after the first shares the side that has the newest vertex, so any path from triangle
-to triangle across their sides can be written. Paths are found greedily: go where fewest ways are
-left, so that no triangle ends up alone; at the end of a path begin the next one beside the triangle
-that was drawn last, so that vertices come again soon after they came first, which is what the
-compression of the result lives on.
+Each triangle after the first shares a side that has the newest vertex, so any path from triangle
+to triangle across their sides can be written. Paths are found greedily: go where the fewest ways
+are left, so that no triangle ends up alone; at the end of a path begin the next one beside the
+triangle that was drawn last, so that vertices come again soon after they came first, which makes
+the result compress well.
 
 References
 ----------
-ISO 32000-2, 8.7.4.5.5: free-form Gouraud-shaded triangle meshes, and their edge flags.
+ISO 32000-2, 8.7.4.5.5: free-form Gouraud-shaded triangle meshes, and their edge flags. F. Evans,
+S. Skiena, A. Varshney, "Optimizing triangle strips for fast rendering", IEEE Visualization 1996:
+greedy paths to the neighbour with the fewest neighbours.
 """
 
 from __future__ import annotations
@@ -85,7 +87,7 @@ def _cover(twins: Int64Array, n_triangles: int) -> Int32Array:
 
 @inner_kernel
 def _best_way(t: int, twins: Int64Array, drawn: BoolArray) -> int:
-    """Half-edge by which to enter the neighbour that has fewest ways on, -1 if none is left."""
+    """Half-edge by which to enter the neighbour with the fewest ways on, -1 if none is left."""
     best = NO_SIDE
     fewest = 4
     for e in range(3 * t, 3 * t + 3):

@@ -182,7 +182,7 @@ def study_with(
 
 
 def count_study_steps(settings: Settings) -> int:
-    """About how often a study with these settings reports progress."""
+    """Approximate number of progress reports of a study with these settings."""
     return len(SHARES) * count_steps(settings) + len(RIVALS)
 
 

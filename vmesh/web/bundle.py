@@ -1,7 +1,7 @@
 """JavaScript modules -> one script.
 
 The modules are ours and plain: named imports from files beside them, named exports, nothing else.
-For those a bundler of the JavaScript world, and Node to run it, would be a large tool for a few
+For these a bundler of the JavaScript world, and Node to run it, would be a large tool for a few
 lines. Each module becomes a function that gives its exports, so that names cannot clash; whatever
 is written in another way is refused and not guessed at.
 """
@@ -25,7 +25,7 @@ _END_OF_SCRIPT: Final = re.compile(r"</script|<!--", re.IGNORECASE)
 
 
 def bundle(entry: str) -> str:
-    """One script of a module of `vmesh/web` and of all that it imports.
+    """One script that holds a module of `vmesh/web` and all that it imports.
 
     Raises
     ------

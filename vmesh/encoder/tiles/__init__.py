@@ -1,1 +1,1 @@
-"""Large pictures in tiles: each is worked on as a picture of its own, then all are joined."""
+"""Large pictures in tiles: each tile is worked on as a picture, then all are joined."""

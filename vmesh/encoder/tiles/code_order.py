@@ -13,10 +13,10 @@ from vmesh.kernels.delaunay import delaunay
 
 
 def code_order(vertices: Int32Array, grid: Grid | None, unit: int) -> Hierarchy:
-    """Order of the colours and what each is predicted from.
+    """Order of the colours, and the vertices that each is predicted from.
 
-    Each tile is a mesh of its own. A vertex on its sides counts as one of the first tile that holds
-    it; its parents there come before it.
+    Each tile is a mesh of its own. A vertex on its sides belongs to the first tile that holds it;
+    its parents there come before it.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def code_order(vertices: Int32Array, grid: Grid | None, unit: int) -> Hierarchy:
 
 
 def _members(vertices: Int32Array, grid: Grid, unit: int) -> list[Int64Array]:
-    """The vertices in each tile or on its sides, in raster order, by tile."""
+    """Vertices in each tile or on its sides, in raster order, by tile."""
     side = grid.side * unit
     columns, rows = vertices.T.astype(np.int64) // side
     on_line = vertices.T % side == 0

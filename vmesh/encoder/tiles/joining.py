@@ -1,7 +1,8 @@
 """The meshes of the tiles of a picture as one mesh, whose triangles keep to their tiles.
 
 Neighbours choose the vertices of the side that they share without regard to each other. The joined
-mesh has those of both: a triangle becomes a fan where the other tile has vertices in its edge::
+mesh has the vertices of both: a triangle becomes a fan where the other tile has vertices on its
+edge::
 
     u         u             from u to v the line between two tiles,
     | \\       | \\           p a vertex of the tile on the left
@@ -27,10 +28,10 @@ from vmesh.grid import Grid
 from vmesh.mesh.areas import doubled_areas
 from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 
-# Vertices so many half pixels beside a line are put on it. With 1 a notch is left here and there
-# where an edge of the picture crosses the line. kodim05, 15 and 23 in tiles of 256 pixels have
-# 23.26, 31.45 and 34.77 dB with 1, 23.24, 31.39 and 34.76 with 3 (4,000 vertices); 26.98, 34.46
-# and 38.83 with 1, 26.99, 34.35 and 38.67 with 3 (12,000).
+# Vertices at most so many half pixels from a line are put on it. With 1 a notch is left here and
+# there where an edge of the picture crosses the line. kodim05, 15 and 23 in tiles of 256 pixels
+# have 23.26, 31.45 and 34.77 dB with 1, 23.24, 31.39 and 34.76 with 3 (4,000 vertices); 26.98,
+# 34.46 and 38.83 with 1, 26.99, 34.35 and 38.67 with 3 (12,000).
 _NEAR: Final = 3
 
 
@@ -62,7 +63,7 @@ def join(
 def _put_on_lines(
     points: Int32Array, triangles: Int64Array, grid: Grid
 ) -> tuple[Int32Array, Int64Array]:
-    """Move vertices that are close to a line between tiles; drop what then vanishes.
+    """Move vertices that are close to a line between tiles onto it; drop what then vanishes.
 
     A vertex stays where a triangle would be turned over, or lose its area and not lie on a line.
     """
@@ -93,7 +94,7 @@ def _fan_out(points: Int32Array, triangles: Int64Array, axis: int) -> Int64Array
     place[order] = np.arange(len(order))
     lines = points[triangles, 1 - axis]
     is_parallel = lines == np.roll(lines, -1, axis=1)
-    # No triangle has two such edges; it is turned so that the one is from u to v.
+    # No triangle has two such edges; it is turned so that such an edge is from u to v.
     turn = is_parallel.argmax(axis=1)[:, None] + np.arange(3)
     u, v, w = np.take_along_axis(triangles, turn % 3, axis=1).T
     # The vertices along the edge follow each other in the order.

@@ -1,4 +1,4 @@
-"""Drafts of a picture in tiles, of which each is worked on as a picture of its own.
+"""Drafts of a picture in tiles, each of which is worked on as a picture of its own.
 
 The tiles share nothing but the cost of a vertex, so they are the jobs of the threads.
 """
@@ -25,8 +25,8 @@ _NO_ERROR: Final = 1e-9  # instead of 0, where it divides
 # What the least useful vertex costs falls with a larger power of their number than this: a search
 # in such steps comes from above.
 _COST_POWER: Final = 1.5
-# A dense sample has many vertices that are worth next to nothing: what all are worth on average
-# is right for so many times fewer.
+# A dense sample has many vertices that are worth next to nothing: the average of all is right for
+# so many times fewer.
 _CAUTION: Final = 4.0
 # A search for a number ends where there are so many times more.
 _NEAR: Final = 1.1
@@ -35,17 +35,17 @@ _SMALL_CHANGE: Final = 0.05  # of the vertices of a tile
 # How often the tiles' numbers are corrected for the vertices that they share.
 _MAX_CORRECTIONS: Final = 8
 REPORTS: Final = 6
-"""How often it is reported, at most, while something is done to all tiles."""
+"""Number of progress reports, at most, while something is done to all tiles."""
 
 
 class TiledDraft(Generic[Part]):
-    """A draft that is made of one for each tile of a grid.
+    """A draft that is made of a draft for each tile of a grid.
 
     Parameters
     ----------
     grid : Grid
     parts : sequence of Draft
-        Those of the tiles, in the order of the grid.
+        Drafts of the tiles, in the order of the grid.
     run : callable
         Runs the jobs, of which each has tiles of its own.
     """
@@ -91,11 +91,11 @@ class TiledDraft(Generic[Part]):
 
     @property
     def _n_apart(self) -> int:
-        """Number of vertices of all tiles, those that they share counted in each."""
+        """Number of vertices of all tiles; shared ones count in each."""
         return sum(self._counts)
 
     def _numbers(self, n_vertices: int) -> list[int]:
-        """Numbers of vertices for the tiles, to be about so many when they are joined."""
+        """Numbers of vertices for the tiles that make about so many when they are joined."""
         total = round(self._n_apart * n_vertices / self.n_vertices)
         return apportion(self._counts, total)
 
@@ -186,12 +186,12 @@ class TiledRemesher(TiledDraft[Remesher]):
         return numbers
 
     def _excess(self, n_vertices: int, max_error: float) -> float:
-        """How many times more vertices there are than wanted, or than the error allows."""
+        """Factor by which there are too many vertices for the number or the error wanted."""
         allowed: float = (max_error / max(self.error, _NO_ERROR)) ** (1 / ERROR_POWER)
         return min(self._n_apart / n_vertices, allowed)
 
     def _next_cost(self, excess: float) -> float:
-        """What to thin to next where there are so many times more vertices than wanted."""
+        """Cost to thin to next where there are so many times more vertices than wanted."""
         before, factor = self._cost, excess
         if before == 0.0:
             before, factor = self.error / self._n_apart, excess / _CAUTION
@@ -211,14 +211,17 @@ def crop(image: SampleArray, tile: Tile) -> SampleArray:
 
 
 def apportion(weights: Sequence[float], total: int) -> list[int]:
-    """Numbers of vertices in proportion to weights, that add up to a total if each has enough."""
+    """Numbers of vertices in proportion to weights, by the method of largest remainders.
+
+    They add up to the total unless a tile has to be given the vertices of its corners.
+    """
     exact = np.asarray(weights) * (total / max(sum(weights), _NO_ERROR))
     whole = np.floor(exact).astype(np.int64)
-    # What rounding left goes to those that lost most by it.
+    # The rest of the total goes to the numbers that lost most by rounding.
     order = np.argsort(whole - exact, kind="stable")
     whole[order[: max(0, total - int(whole.sum()))]] += 1
     return [max(_CORNERS, number) for number in whole.tolist()]
 
 
 def _say_nothing() -> None:
-    """The report of a job: only the thread that waits for it may call what a caller gave."""
+    """Report nothing, as jobs do: only the thread that waits for them may call a report."""

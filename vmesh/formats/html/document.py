@@ -26,12 +26,12 @@ _ITEM: Final = "{http://www.w3.org/1999/02/22-rdf-syntax-ns#}li"
 
 
 def write_html(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> None:
-    """Write a mesh as a page for browsers, with all that it takes to show it.
+    """Write a mesh as a page for browsers that needs no other file to show it.
 
     Parameters
     ----------
     mesh : Mesh
-        One that a file may hold; its metadata are in the page as they are in the file.
+        A mesh that a file may hold; its metadata are in the page as they are in the file.
     stream : binary file
     limits : Limits
         What the mesh may ask for.
@@ -65,7 +65,7 @@ def element_script() -> str:
 
 
 def name_of(mesh: Mesh) -> str:
-    """What a reader who does not see the picture is told: its title, or its size."""
+    """Name of a picture for readers who do not see it: its title, or its size."""
     return (
         _xmp_title(mesh.metadata)
         or Description.of(mesh.metadata).title

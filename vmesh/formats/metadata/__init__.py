@@ -1,1 +1,1 @@
-"""What travels with a picture: EXIF, ICC profiles, and what documents say about it."""
+"""Metadata of a picture: EXIF, ICC profiles, and its description in documents."""

@@ -1,4 +1,4 @@
-"""What a document says about its picture, as PDF, SVG and pages tell it."""
+"""The description of a picture in the documents that show it: PDF, SVG and pages."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _ITEM: Final = '<rdf:{0}><rdf:li xml:lang="x-default">{1}</rdf:li></rdf:{0}>'
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """What is known of a picture; empty where nothing is.
+    """Facts about a picture, empty where nothing is known.
 
     No date is made up: the same mesh gives the same bytes.
 
@@ -49,7 +49,7 @@ class Description:
 
     @classmethod
     def of(cls, metadata: Metadata) -> Description:
-        """What the picture's EXIF says."""
+        """Description by a picture's EXIF."""
         exif = read_exif(metadata.exif)
         title, author, rights = (
             _text(exif.get(tag)) for tag in (_DESCRIPTION, _ARTIST, _COPYRIGHT)

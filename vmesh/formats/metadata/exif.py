@@ -1,4 +1,4 @@
-"""What a picture's EXIF block says."""
+"""Entries of a picture's EXIF block."""
 
 from __future__ import annotations
 

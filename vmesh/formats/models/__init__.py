@@ -1,1 +1,1 @@
-"""Mesh <-> the files of modelling programs: PLY, OBJ, glTF and the canonical text."""
+"""Mesh <-> files of modelling programs, PLY, OBJ and glTF, and the canonical text."""

@@ -1,6 +1,6 @@
-"""glTF 2.0 in ``.glb`` files: where it differs from PLY and OBJ.
+"""glTF 2.0 in ``.glb`` files: how it differs from PLY and OBJ.
 
-Its vertex colours are in linear light, where ours are sRGB, and its surfaces are lit unless a
+Its vertex colours are in linear light, while ours are sRGB, and its surfaces are lit unless a
 material says that they are not. trimesh reads and writes the files, but rounds colours to 8 bits,
 which are too few for linear light: they pass it under another name, as an application's attribute.
 
@@ -11,6 +11,7 @@ which are too few for linear light: they pass it under another name, as an appli
 References
 ----------
 Khronos Group, "glTF 2.0 Specification", 3.7.2.1 (colours), 4.4 (GLB); KHR_materials_unlit.
+IEC 61966-2-1, 1999: the transfer function of sRGB.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _ENTRIES_PER_VERTEX: Final = 32  # indices, and what else programs say of a vert
 
 
 def linear_from_srgb(colors: UInt8Array) -> UInt16Array:
-    """RGBA of 8 bits in linear light, shape (n, 4), 16 bits, so that each stays distinct."""
+    """RGBA of 8 bits, shape (n, 4), in linear light of 16 bits, so that each stays distinct."""
     values = colors / 255.0
     rgb = values[:, :3]
     values[:, :3] = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
@@ -57,7 +58,7 @@ def srgb_from_linear(colors: npt.NDArray[Any]) -> UInt8Array:
 
 
 def finish_tree(tree: dict[str, Any], colors: SampleArray) -> None:
-    """Give the JSON of a file with one surface its colours, and a material that needs no lamp."""
+    """Give the JSON of a file with one surface its colours, and a material that needs no light."""
     (primitive,) = tree["meshes"][0]["primitives"]
     primitive["attributes"][_STANDARD_COLOR] = index = primitive["attributes"].pop(COLOR)
     tree["accessors"][index]["normalized"] = True

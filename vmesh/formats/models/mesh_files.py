@@ -31,7 +31,7 @@ _AS_IT_IS: Final = {"process": False, "maintain_order": True, "skip_materials": 
 
 
 def import_trimesh() -> ModuleType:
-    """Trimesh, which is not installed with vmesh.
+    """The module trimesh, which is not installed with vmesh.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def write_obj(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) 
 
 
 def write_glb(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> None:
-    """Write a mesh as glTF 2.0 in one file, to be shown without lamps."""
+    """Write a mesh as glTF 2.0 in one file, to be shown unlit."""
     limits.check_vertices(mesh.n_vertices)
     surface = surface_of(mesh)
     colors = linear_from_srgb(surface.colors)
@@ -97,7 +97,7 @@ def read_surface(data: bytes, kind: str, *, limits: Limits = DEFAULT_LIMITS) -> 
     ----------
     data : bytes
     kind : {"ply", "obj", "glb"}
-        Which kind of file it is.
+        Kind of the file.
     limits : Limits
 
     Raises
@@ -166,7 +166,7 @@ def _colors_of(part: Any) -> UInt8Array:
 
 
 def _joined(parts: list[Surface]) -> Surface:
-    """Surfaces as one."""
+    """Several surfaces as one."""
     if not parts:
         raise MeshError("expected a mesh of triangles, found none")
     firsts = np.cumsum([0, *(len(part.points) for part in parts)])

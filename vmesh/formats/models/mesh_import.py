@@ -1,4 +1,4 @@
-"""Files of other programs' meshes, and the canonical text -> Mesh."""
+"""Mesh files of other programs, and the canonical text -> Mesh."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def import_mesh(
     Returns
     -------
     Mesh
-        In canonical order and fit for a ``.vmesh`` file. Grey or RGB where that holds all colours.
+        In canonical order and fit for a ``.vmesh`` file; grey or RGB if that holds all colours.
         Vertices lie on the coarsest lattice that has them all, or on the finest there is.
 
     Raises

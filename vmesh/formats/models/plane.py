@@ -45,7 +45,7 @@ class Surface:
 
 
 def surface_of(mesh: Mesh) -> Surface:
-    """A mesh upright in the plane z = 0, a pixel long as 1, its triangles counter-clockwise."""
+    """A mesh upright in the plane z = 0, a unit for each pixel, its triangles counter-clockwise."""
     points = np.zeros((mesh.n_vertices, 3))
     points[:, 0] = mesh.points[:, 0]
     points[:, 1] = mesh.height - mesh.points[:, 1]
@@ -62,7 +62,7 @@ def mesh_of(
     step: int = 1,
     limits: Limits = DEFAULT_LIMITS,
 ) -> Mesh:
-    """The mesh that a flat surface is, its canvas the box around it; see `import_mesh`."""
+    """Mesh of a flat surface, its canvas the box around it; see `import_mesh`."""
     check_surface(surface)
     low, high = surface.points[:, :2].min(axis=0), surface.points[:, :2].max(axis=0)
     extent = high - low
@@ -112,7 +112,7 @@ def _subdivision_of(places: Float64Array, side: int) -> int:
 
 
 def _fewest_components(colors: Int64Array) -> Int64Array:
-    """Grey, RGB or RGBA of RGBA colours: what they need."""
+    """Grey, RGB or RGBA of RGBA colours: the fewest components that hold them all."""
     if (colors[:, 3] < 255).any():
         return colors
     is_grey = (colors[:, :1] == colors[:, :3]).all()
@@ -120,7 +120,7 @@ def _fewest_components(colors: Int64Array) -> Int64Array:
 
 
 def _turned(vertices: Int64Array, triangles: Int64Array) -> Int64Array:
-    """Triangles that all turn from x towards y."""
+    """Triangles that are all positively oriented, from x towards y."""
     corners = vertices[triangles]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     is_wrong = first[:, 0] * second[:, 1] < first[:, 1] * second[:, 0]

@@ -36,6 +36,10 @@ class MeshPattern:
 
     Each triangle is a Coons patch with straight sides whose fourth side is a point, which makes
     its colour linear.
+
+    References
+    ----------
+    S. A. Coons, "Surfaces for computer-aided design of space forms", MIT, MAC-TR-41, 1967.
     """
 
     def __init__(self) -> None:

@@ -1,10 +1,15 @@
-"""Mesh -> PDF: one page with the mesh as shadings of type 4, which are made for such meshes.
+"""Mesh -> PDF: one page with the mesh as shadings of type 4, which draw such meshes exactly.
 
 ::
 
     catalog -- XMP
       page -- the picture's own XMP
         content:   scale to pixels, the mesh (``mesh_content.py``)
+
+References
+----------
+ISO 32000-2, 8.7.4.5.5: free-form Gouraud-shaded triangle meshes. H. Gouraud, "Continuous shading of
+curved surfaces", IEEE Transactions on Computers C-20(6), 1971.
 """
 
 from __future__ import annotations

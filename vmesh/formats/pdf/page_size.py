@@ -1,4 +1,4 @@
-"""The size of a PDF page: what is asked for, else what the picture's EXIF says, else its pixels."""
+"""The size of a PDF page: as asked for, else by the picture's EXIF, else by its pixels."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ class Page:
 
     @property
     def user_unit(self) -> int:
-        """Points in a unit of the page, 1 but for pages that are longer than 14,400 points."""
+        """Points in a unit of the page: 1, except for pages that are longer than 14,400 points."""
         return max(1, ceil(max(self.width, self.height) / _LONGEST_SIDE))
 
 
 def make_page(mesh: Mesh, width: str | None = None) -> Page:
-    """Page that a mesh fills.
+    """The page that a mesh fills.
 
     Parameters
     ----------

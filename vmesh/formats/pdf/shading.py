@@ -5,14 +5,18 @@ widths are allowed by the standard, but not drawn by all programs. Coordinates a
 lattice units, so nothing is rounded; `Decode` turns them into pixels.
 
 A canvas of more than 65,535 units is drawn by several shadings. Squares of 2**15 units, and of
-twice, four times ... that for larger triangles, each draw the triangles whose first corner, the
-nearest to the top left, they hold, on a grid that is as much coarser as the square is larger::
+twice, four times ... that side for larger triangles, each draw the triangles whose bounding box has
+its top left corner in them, on a grid that is as much coarser as the square is larger::
 
     |<- 2**15 ->|            a triangle that is no longer than the square's side and starts in
     +-----------+- - - - +   it ends less than 2**16 units from the square's corner
     |       .___|_____.
     |        \\  |    .      |
     +---------\\-+- -.- - - +
+
+References
+----------
+ISO 32000-2, 8.7.4.5.5: free-form Gouraud-shaded triangle meshes.
 """
 
 from __future__ import annotations
@@ -31,9 +35,9 @@ from vmesh.mesh import Mesh
 MAX_COORDINATE: Final = 0xFFFF
 _SQUARE: Final = 1 << 15
 # Pixels by which everything is moved. pdfium leaves out each row of pixels at whose top a triangle
-# has a corner, so vertices must not lie on rows of the device at any common resolution. To the
-# right and up, since pdfium and mupdf look at a pixel's top left corner where they should look at
-# its centre: downwards they come 1 to 4 dB further from the true picture.
+# has a corner, so vertices must not lie on rows of the device at any common resolution. The move is
+# to the right and up, since pdfium and mupdf look at a pixel's top left corner where they should
+# look at its centre: downwards they come 1 to 4 dB further from the true picture.
 _SHIFT: Final = (0.0031, -0.0037)
 
 

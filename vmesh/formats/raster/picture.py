@@ -88,7 +88,7 @@ def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Pictur
 
 
 def picture_of(image: Image.Image) -> Picture:
-    """What an image of Pillow holds: its EXIF orientation applied, alpha and palette resolved.
+    """Picture of an image of Pillow: its EXIF orientation applied, alpha and palette resolved.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _array_of(image: Image.Image) -> SampleArray:
 
 
 def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
-    """What travels along; an ICC profile only if it fits the array's components."""
+    """Metadata of an image; an ICC profile only if it fits the array's components."""
     profile = image.info.get("icc_profile") or b""
     xmp = image.info.get("xmp") or b""
     n_components = 1 if array.ndim == 2 else array.shape[2]

@@ -18,9 +18,9 @@ def render_part(
     *,
     limits: Limits = DEFAULT_LIMITS,
 ) -> SampleArray:
-    """Pixels of a part of a mesh: where :func:`render` draws the whole at that scale, its crop.
+    """Pixels of a part of a mesh: a crop of what :func:`render` draws of the whole at that scale.
 
-    Where a pixel of the result is larger than one of the canvas, it is the mean of several.
+    A pixel of the result that is larger than one of the canvas is the mean of several.
 
     Parameters
     ----------

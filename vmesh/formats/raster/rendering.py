@@ -38,9 +38,10 @@ def render(
 ) -> SampleArray:
     """Pixels of a mesh.
 
-    Every pixel takes the colour at its centre; the centre on an edge belongs to the triangle on
-    the right of the edge or below it. At the mesh's own size the result is that of exact integer
-    arithmetic; at any other, vertices are first rounded to 1/256 of a pixel of the result.
+    Every pixel takes the colour at its centre; a centre on an edge belongs to the triangle on the
+    right of the edge or below it (the top-left rule). At the mesh's own size the result is that of
+    exact integer arithmetic; at any other, vertices are first rounded to 1/256 of a pixel of the
+    result.
 
     Parameters
     ----------
@@ -183,7 +184,7 @@ def png_of(raster: SampleArray) -> bytes:
 
 
 def _takes_exif(format_name: str, mode: str, exif: bytes) -> bool:
-    """Whether a format can hold an EXIF block, which may be too long or not make sense."""
+    """True if a format can hold an EXIF block, which may be too long or make no sense."""
     try:
         Image.new(mode, (1, 1)).save(io.BytesIO(), format_name, exif=exif)
     except Exception:
@@ -193,7 +194,7 @@ def _takes_exif(format_name: str, mode: str, exif: bytes) -> bool:
 
 
 def fits_icc(profile: bytes, n_components: int) -> bool:
-    """Whether an ICC profile describes pictures of this many components."""
+    """True if an ICC profile describes pictures of this many components."""
     return profile[16:20] == _ICC_SPACES[n_components]
 
 
@@ -251,7 +252,7 @@ def with_alpha(colors: SampleArray, opaque: int = 255) -> SampleArray:
 
 
 def _band_rows(columns: int, factor: int, n_triangles: int) -> int:
-    """Rows of a band: enough samples that the visit to every triangle does not weigh."""
+    """Rows of a band, with so many samples that the visit to every triangle does not weigh."""
     return max(1, max(_BAND_PIXELS, 8 * n_triangles) // (columns * factor * factor))
 
 

@@ -1,13 +1,17 @@
 """Mesh -> SVG: for each triangle, or region of several, one flat colour or linear gradient.
 
 SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the
-best linear gradient is `regions.py`, its text `gradients.py`. A single channel of colour is
-drawn exactly, so that three layers, one for each channel, joined by `mix-blend-mode: screen`, show
-the mesh as it is.
+best linear gradient is found in `regions.py` and written in `gradients.py`. A single channel of
+colour is drawn exactly, so that three layers, one for each channel, joined by `mix-blend-mode:
+screen`, show the mesh as it is.
 
 Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
-same to the last digit on both sides; or regions reach under their neighbours (`outlines.py`).
-Alpha is drawn as a mask of the same make.
+same to the last digit on both sides; or regions are trapped, and reach under their neighbours
+(`outlines.py`). Alpha is drawn as a mask in the same manner.
+
+References
+----------
+W3C, "Compositing and Blending Level 1": the blend mode screen.
 """
 
 from __future__ import annotations
@@ -64,10 +68,10 @@ def write_svg(
         In mode "gradient", neighbours share one gradient where that adds less than this to the
         squared error, summed over pixels and channels.
     seams : {"crisp", "trapping"}
-        How no seams show: edges that are not smoothed, or regions that reach under their
+        How seams are avoided: by edges that are not smoothed, or by regions that reach under their
         neighbours, for programs that smooth all edges. Not "trapping" in mode "auto".
     fit : ndarray, optional
-        The photograph that the mesh was made of, as :func:`vmesh.encode` takes it, in the size of
+        The photograph that the mesh was made from, as :func:`vmesh.encode` takes it, in the size of
         the canvas: gradients are fitted to its pixels instead of to the mesh.
     width, height : str or float, optional
         Size at which it shows, in units of CSS such as "210mm" or "100%"; a number counts
@@ -145,7 +149,7 @@ def _channels(
 
 
 def gzipped(stream: BinaryIO) -> gzip.GzipFile:
-    """What compresses into a stream, without name and time: the same drawing, the same bytes."""
+    """Gzip file on a stream, without name and time: the same drawing gives the same bytes."""
     return gzip.GzipFile(filename="", fileobj=stream, mode="wb", mtime=0)
 
 
@@ -158,7 +162,7 @@ def _check_work(mesh: Mesh, limits: Limits) -> None:
 
 
 def _write_description(document: etree._IncrementalFileWriter, mesh: Mesh) -> None:
-    """Write what the picture's EXIF says of it."""
+    """Write title, author and rights of the picture, as its EXIF tells them."""
     known = Description.of(mesh.metadata)
     texts = {"title": known.title, "desc": ", ".join(filter(None, (known.author, known.rights)))}
     for name, text in texts.items():

@@ -1,7 +1,7 @@
 """Groups of an SVG document: a backdrop, and the layers of a mesh with their gradients and paths.
 
-What is inside of a layer is written as text, past lxml: elements made one by one took twice as
-long, and nothing in that text needs escaping.
+The content of a layer is written as text, past lxml: elements made one by one took twice as long,
+and nothing in that text needs escaping.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from vmesh.progress import Progress
 
 # Pixels by which flat triangles move left and up. A centre that lies on an edge then falls to its
 # right or below it, as in our raster, whatever a program's own rule. Programs round places to 1/64
-# pixel; and hardly an edge is short and has this slope, so that centres on it would stay there.
+# pixel; and hardly any edge is so short and of such a slope that centres would stay on it.
 _FLAT_SHIFT: Final = (5 / 64, 2 / 64)
 _CHUNK: Final = 1 << 12  # elements that are written at a time
 _GRADIENT: Final = '<linearGradient id="{}"{}</linearGradient>'
@@ -127,8 +127,8 @@ def _shown_means(mesh: Mesh, rgb: UInt8Array, means: Float64Array) -> Float64Arr
     """Mean of the pixels that show each triangle at the canvas's own size, shape (m, 3).
 
     Crisp edges give a pixel to the triangle that holds its centre, so for small triangles this is
-    closer than the mean over the triangle: by some 3 dB at 20,000 vertices on photographs. Those
-    without a pixel keep that of `means`.
+    closer than the mean over the triangle: by some 3 dB at 20,000 vertices on photographs.
+    Triangles without a pixel keep their entries of `means`.
     """
     positions = scaled_positions(mesh, (mesh.width, mesh.height))
     raster = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)

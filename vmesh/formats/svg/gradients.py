@@ -1,6 +1,6 @@
 """Linear gradients as text: where they start and end, and the colours there.
 
-A gradient is told in the unit square of its region's bounding box, in which its value is
+A gradient is written in the unit square of its region's bounding box, in which its value is
 a + b x + c y with b >= 0. It may start and end anywhere along the lines of one value, and before
 and beyond the region as long as there are colours for the values there. Ends at 0 are not written::
 
@@ -31,7 +31,7 @@ _DEFAULTS: Final = (0, 0, 1, 0)
 
 
 def gradient_bodies(layer: Layer, unit: int) -> tuple[Int64Array, list[str]]:
-    """Regions that a flat colour will not do for, and what stands in their gradient elements.
+    """Regions for which a flat colour will not do, and the content of their gradient elements.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def gradient_bodies(layer: Layer, unit: int) -> tuple[Int64Array, list[str]]:
     worth : ndarray
         Shape (k,), int64, ascending.
     bodies : list of str
-        Attributes and content, from behind the id on.
+        Attributes and content of each, from after the id on.
     """
     outlines = layer.outlines
     spans = _spans(layer.fits, outlines, unit)
@@ -81,8 +81,9 @@ def _plane(fits: Slopes, boxes: Float64Array) -> Float64Array:
 def _gamut(fits: Slopes, spans: Float64Array) -> Float64Array:
     """Least and largest value that a gradient may end with, shape (n, 2).
 
-    Those that have colours, and those of the region even where a channel lies slightly beyond 0
-    or 255 there: to cut that channel alone changes less than to end the gradient early.
+    These are the values that have colours, and those of the region even where a channel lies
+    slightly beyond 0 or 255: clipping that channel alone changes less than ending the gradient
+    early.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         bounds = np.sort([-fits.middles / fits.axes, (255 - fits.middles) / fits.axes], axis=0)
@@ -92,7 +93,7 @@ def _gamut(fits: Slopes, spans: Float64Array) -> Float64Array:
 
 
 def _kept_in(values: Float64Array, gamut: Float64Array) -> Float64Array:
-    """Values of shape (n, 2) where there are colours for them."""
+    """Values of shape (n, 2), clipped to those that have colours."""
     return values.clip(gamut[:, :1], gamut[:, 1:])
 
 

@@ -1,9 +1,14 @@
-"""Layers of a drawing: what is painted on each other, and what with.
+"""Layers of a drawing: regions that are painted over one another, and their paint.
 
 A layer paints regions, each with one gradient or flat colour. Where one gradient will not do, the
 first layer shows the red of a triangle and two more, which are *screened* onto it, its green and
 its blue: a single channel is exact, and the screen of colours that have no channel in common is
 their sum.
+
+References
+----------
+W3C, "Compositing and Blending Level 1": the blend mode screen. G. M. Morton, "A computer oriented
+geodetic data base and a new technique in file sequencing", IBM, 1966: the Z-curve.
 """
 
 from __future__ import annotations
@@ -29,14 +34,14 @@ _CURVE_BITS: Final = 17  # of a place in half pixels
 
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """Regions, and what is painted there.
+    """Regions and their paint.
 
     Parameters
     ----------
     outlines : Outlines
-        Of the regions.
+        Outlines of the regions.
     fits : Slopes
-        What best fills them.
+        The gradients that fit them best.
     smallest_range : float
         Levels between the ends of a gradient; below it a flat colour will do.
     rounding : float
@@ -66,12 +71,12 @@ def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
         split[:] = mesh.n_components > 1
         rounding = _EXACT_ROUNDING
     else:
-        # A flat colour leaves out both what a gradient shows and what it leaves.
+        # A flat colour errs by what a gradient shows and by what the gradient leaves.
         smallest = max(smallest, _FLAT_SHARE * style.tolerance)
         split = _farthest(mesh, moments) > style.tolerance - smallest - _RESERVE
     order = _morton_order(moments.means[:, :2])
-    # Pixels on an edge go to what is painted last. Those that are split come after all others, so
-    # that they win them on the first layer as they do on those that only they are on.
+    # Pixels on an edge go to what is painted last. Split triangles come after all others, so that
+    # they win these pixels on the first layer as they do on the layers that they alone are on.
     order = order[np.argsort(split[order], kind="stable")]
     regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
     trapped = style.seams == "trapping"

@@ -7,9 +7,9 @@
      |      ______/         same side: crisp edges then leave no pixel between them, and give each
      |_____|                to the region that holds its centre.
 
-Programs that smooth all edges let what is beneath shine through where two regions meet. For them a
-region laps: each side that it shares with a region painted later is drawn out to the middle of the
-triangle across, where the later region covers it.
+Programs that smooth all edges let what is beneath shine through where two regions meet. For them
+regions are trapped: each side that a region shares with one that is painted later is drawn out to
+the middle of the triangle across, where the later region covers it.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Outlines:
     regions : ndarray
         Shape (l,), int64: the region of each loop, ascending from 0 without gaps.
     bounds : ndarray
-        Shape (k, 2), int64: as `corners`, but with the corner before it for a place that a region
-        has under another one.
+        Shape (k, 2), int64: as `corners`, but a place under another region is replaced by the
+        corner before it.
     """
 
     corners: Int64Array
@@ -48,7 +48,7 @@ class Outlines:
 
     @cached_property
     def starts(self) -> Int64Array:
-        """Where each region starts in `corners`, shape (n,)."""
+        """Start of each region in `corners`, shape (n,)."""
         return self.loops[np.diff(self.regions, prepend=-1) > 0]
 
     @cached_property
@@ -65,7 +65,7 @@ class Outlines:
         return boxes
 
     def trapped(self, sides: Int64Array, places: Int64Array) -> Outlines:
-        """The same with sides drawn out to a place each; a side has the number of its corner."""
+        """Outlines with sides drawn out to a place each; a side has the number of its corner."""
         corners = np.insert(self.corners, sides + 1, places, axis=0)
         bounds = np.insert(self.bounds, sides + 1, self.bounds[sides], axis=0)
         loops = self.loops + np.searchsorted(sides, self.loops)

@@ -1,8 +1,8 @@
-"""The photograph under a mesh: what its regions are painted after, in place of the mesh's colours.
+"""The photograph under a mesh, to which its regions are fitted in place of the mesh's colours.
 
-A triangle's moments are those of the pixels whose centres it holds. The mesh's own count beside
-them as much as `_OWN_WEIGHT` pixels: they decide where there are too few pixels for a gradient, and
-all of it where there is none.
+A triangle's moments are those of the pixels whose centres it holds. The mesh's own moments count
+beside them as much as `_OWN_WEIGHT` pixels: they decide where there are too few pixels for a
+gradient, or none.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from vmesh.mesh import Mesh
 
 _OWN_WEIGHT: Final = 1.0
 # In 1/256 pixel: a centre on an edge or a vertex counts in part for the triangles around it, since
-# programs have each their own rule. Worth 1.2 dB at 20,000 adaptive vertices, which are centres.
+# each program has its own rule. Worth 1.2 dB at 20,000 adaptive vertices, which are centres.
 _NUDGES: Final = ((-1, -1), (1, -1), (-1, 1), (1, 1))
 _BAND_PIXELS: Final = 1 << 20  # that are summed at a time
 
@@ -43,7 +43,7 @@ class Photograph:
     weights: UInt8Array
 
     def moments(self, mesh: Mesh, own: Moments) -> Moments:
-        """Those of the pixels of each triangle, with its own for what they leave open."""
+        """Moments of the pixels of each triangle, with its own for what they leave open."""
         # Sums are taken about the means of the mesh, so that no digits are lost.
         origins = np.concatenate([own.means, np.zeros((1, 5))])
         n, weights = len(origins), np.zeros(len(origins))
@@ -87,7 +87,7 @@ def rgba_of(mesh: Mesh, photograph: SampleArray) -> UInt8Array:
     Raises
     ------
     ValueError
-        If it has not the size of the mesh's canvas, or is no picture.
+        If it does not have the size of the mesh's canvas, or is no picture.
     """
     array = np.asarray(photograph)
     if array.dtype not in (np.uint8, np.uint16) or not (

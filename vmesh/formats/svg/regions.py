@@ -5,11 +5,19 @@ A linear gradient draws colours that depend on one direction only::
     c(p) = middle + axis * (slope . (p - center))
 
 Position and colour of a region's points have a mean and a scatter: the integral of the products of
-their deviations from the mean. Those of two regions add up to those of their union, and they tell
+their deviations from the mean. The moments of two regions give those of their union, and they tell
 the best linear gradient of a region and the squared error that it leaves. With S the scatter of
 positions and C that of positions with colours, the best affine map has the matrix inv(S) C; in axes
-in which S is the unit matrix its largest singular vector is the best map of rank 1, which is what a
-gradient is.
+in which S is the unit matrix its largest singular vector gives the best map of rank 1, which is
+what a gradient is (reduced-rank regression).
+
+References
+----------
+A. J. Izenman, "Reduced-rank regression for the multivariate linear model", Journal of Multivariate
+Analysis 5(2), 1975. T. F. Chan, G. H. Golub, R. J. LeVeque, "Updating formulae and a pairwise
+algorithm for computing sample variances", COMPSTAT 1982: moments of unions. J. H. Ward,
+"Hierarchical grouping to optimize an objective function", Journal of the American Statistical
+Association 58(301), 1963: regions that are merged where the squared error grows least.
 """
 
 from __future__ import annotations
@@ -28,7 +36,7 @@ _CHUNK: Final = 1 << 14  # unions of regions at a time: each takes some kB on th
 
 @dataclass(frozen=True, slots=True)
 class Moments:
-    """Sums over regions, of positions and colours together: x, y, red, green, blue.
+    """Moments of regions, of positions and colours together: x, y, red, green, blue.
 
     Parameters
     ----------
@@ -46,7 +54,7 @@ class Moments:
 
     @classmethod
     def of_triangles(cls, mesh: Mesh, colors: Float64Array) -> Moments:
-        """Those of each triangle; `colors` holds the colours of the vertices, shape (n, 3)."""
+        """Moments of each triangle; `colors` holds the colours of the vertices, shape (n, 3)."""
         corners = np.concatenate([mesh.points, colors], axis=1)[mesh.triangles]
         means = corners.mean(axis=1)
         apart = corners - means[:, None]
@@ -55,16 +63,16 @@ class Moments:
         return cls(areas, means, scatters)
 
     def take(self, regions: Int64Array) -> Moments:
-        """Those of some regions."""
+        """Moments of some regions."""
         return Moments(self.weights[regions], self.means[regions], self.scatters[regions])
 
     def scaled(self, factors: Float64Array) -> Moments:
-        """The same with other weights; `factors` has shape (n,)."""
+        """Moments with weights that are multiplied by `factors`, shape (n,)."""
         scatters = self.scatters * factors[:, None, None]
         return Moments(self.weights * factors, self.means, scatters)
 
     def joined(self, other: Moments) -> Moments:
-        """Those of the unions of regions, one by one."""
+        """Moments of the union of each region with its counterpart in `other`."""
         weights = self.weights + other.weights
         share = other.weights / weights
         apart = other.means - self.means
@@ -73,7 +81,7 @@ class Moments:
         return Moments(weights, means, self.scatters + other.scatters + between)
 
     def of_channel(self, channel: int, chosen: BoolArray) -> Moments:
-        """The same with black in place of the other channels, in the regions that are chosen."""
+        """Moments with black in place of the other channels, in the regions that are chosen."""
         keep = np.ones((len(self.weights), 5))
         keep[chosen, 2:] = np.eye(3)[channel]
         scatters = self.scatters * keep[:, :, None]
@@ -86,7 +94,7 @@ class Moments:
         return maps
 
     def explained(self) -> Float64Array:
-        """What the best gradient takes off the squared error of a flat colour, shape (n,)."""
+        """Squared errors of flat colours that the best gradients take away, shape (n,)."""
         crossed = self.scatters[:, :2, 2:]
         # Eigenvalues of inv(S) C C^T, which are those of the whitened product.
         matrix = self.maps() @ np.swapaxes(crossed, 1, 2)
@@ -122,7 +130,7 @@ class Slopes:
     slopes: Float64Array
 
     def take(self, regions: Int64Array) -> Slopes:
-        """Those of some regions."""
+        """Gradients of some regions."""
         return Slopes(
             *(array[regions] for array in (self.centers, self.middles, self.axes, self.slopes))
         )
@@ -136,21 +144,22 @@ class Slopes:
         _, vectors = np.linalg.eigh(np.swapaxes(maps, 1, 2) @ crossed)
         axes = vectors[:, :, -1]
         slopes = np.einsum("nij,nj->ni", maps, axes)
-        # Of the two ways to tell the same gradient, the one that rises to the right.
+        # Of the two ways to write the same gradient, the one that rises to the right.
         turned = np.where(slopes[:, :1] < 0, -1.0, 1.0)
         return cls(moments.means[:, :2], moments.means[:, 2:], axes * turned, slopes * turned)
 
 
 def merge(mesh: Mesh, moments: Moments, largest: float) -> tuple[Int64Array, Moments]:
-    """Join neighbours while that adds less than `largest` to the squared error.
+    """Join neighbouring regions while that adds less than `largest` to the squared error.
 
-    Pairs that are each other's cheapest neighbours join, all at once, until none is left.
+    All pairs of which each region is the other's cheapest neighbour join at once, until none is
+    left.
 
     Parameters
     ----------
     mesh : Mesh
     moments : Moments
-        Those of its triangles.
+        Moments of its triangles.
     largest : float
         In squared levels times pixels.
 
@@ -159,7 +168,7 @@ def merge(mesh: Mesh, moments: Moments, largest: float) -> tuple[Int64Array, Mom
     regions : ndarray
         Shape (m,), int64: the region of each triangle, numbered in the order of first triangles.
     moments : Moments
-        Those of the regions.
+        Moments of the regions.
     """
     regions = np.arange(mesh.n_triangles)
     if largest <= 0:
@@ -194,7 +203,7 @@ def _neighbors(mesh: Mesh) -> Int64Array:
 
 
 def _costs(moments: Moments, errors: Float64Array, pairs: Int64Array) -> Float64Array:
-    """How much the error grows where pairs of regions join, shape (k,)."""
+    """Growth of the squared error where pairs of regions join, shape (k,)."""
     costs = np.empty(len(pairs))
     for start in range(0, len(pairs), _CHUNK):
         first, second = pairs[start : start + _CHUNK].T
@@ -204,7 +213,7 @@ def _costs(moments: Moments, errors: Float64Array, pairs: Int64Array) -> Float64
 
 
 def _mutual(pairs: Int64Array, costs: Float64Array, n_regions: int) -> Int64Array:
-    """Those pairs, by index, of which each is the cheapest of the other's neighbours."""
+    """Pairs, by index, of which each region is the other's cheapest neighbour."""
     dear_first = np.argsort(costs, kind="stable")[::-1]
     cheapest = np.full(n_regions, -1)
     # Of several values for one place the last stays.
@@ -217,7 +226,7 @@ def _mutual(pairs: Int64Array, costs: Float64Array, n_regions: int) -> Int64Arra
 
 
 def _join(moments: Moments, errors: Float64Array, kept: Int64Array, gone: Int64Array) -> None:
-    """Put the unions of regions in the place of the first ones."""
+    """Put the union of each pair of regions in place of the first."""
     union = moments.take(kept).joined(moments.take(gone))
     moments.weights[kept], moments.means[kept] = union.weights, union.means
     moments.scatters[kept] = union.scatters
@@ -225,7 +234,7 @@ def _join(moments: Moments, errors: Float64Array, kept: Int64Array, gone: Int64A
 
 
 def _distinct(pairs: Int64Array) -> tuple[Int64Array, Int64Array]:
-    """Pairs of different regions, each once with the lower first, and where they were found."""
+    """Pairs of different regions, each once, the lower first, and where each was found."""
     ordered = np.sort(pairs, axis=1)
     ordered[ordered[:, 0] == ordered[:, 1]] = -1
     keys = (ordered[:, 0] << 32) | ordered[:, 1]

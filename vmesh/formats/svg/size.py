@@ -22,8 +22,8 @@ def size_attributes(
     """Attributes ``width`` and ``height``: as they are asked for, else the canvas in pixels.
 
     One of them alone keeps the proportions, and a percentage leaves the other to the program that
-    shows the document. Of both together programs make a box, in the middle of which they show
-    the picture as large as it fits.
+    shows the document. With both, programs show the picture in the middle of a box of that size, as
+    large as it fits.
     """
     if width is None and height is None:
         width = mesh.width
@@ -52,5 +52,5 @@ def parse_length(length: Length) -> tuple[float, str]:
 
 
 def _shortest(number: float) -> str:
-    """A number without exponent, which not all programs read."""
+    """A number as text without an exponent, which not all programs read."""
     return np.format_float_positional(number, _DIGITS, fractional=False, trim="-")

@@ -1,4 +1,4 @@
-"""What a caller asks of an SVG drawing."""
+"""The style of an SVG drawing: the options of a caller, checked."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Seams = Literal["crisp", "trapping"]
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How a mesh is drawn; as for :func:`vmesh.formats.svg.write_svg`.
+    """Options of a drawing, as of :func:`vmesh.formats.svg.document.write_svg`.
 
     Raises
     ------
@@ -45,6 +45,6 @@ class Style:
 
     @property
     def n_stages(self) -> int:
-        """How often a drawing of a picture without alpha reports progress, at most."""
+        """Number of progress reports of a drawing without alpha, at most."""
         n_layers = 3 if self.mode in ("exact", "auto") else 1
         return 1 + 2 * n_layers

@@ -1,7 +1,7 @@
 """A sheet: pictures, drawings and words at their places, to be written as pixels, SVG or PDF.
 
 A unit of a sheet is a pixel of its raster, a pixel of CSS in SVG, and 1/72 inch in PDF; x points
-right and y down. Items are painted in their order on white. Those that show a part of a canvas do
+right and y down. Items are painted in their order on white. Items that show a part of a canvas do
 so through a :class:`View`::
 
       canvas of a mesh                       sheet
@@ -60,7 +60,7 @@ class View:
         return placed
 
     def touches(self, boxes: Float64Array) -> BoolArray:
-        """Which boxes of a canvas, shape (n, 4) as left, top, right, bottom, show; shape (n,)."""
+        """True for each box of a canvas that shows: (n, 4), left, top, right, bottom -> (n,)."""
         right, bottom = self.left + self.across, self.top + self.down
         begins = (boxes[:, 0] <= right) & (boxes[:, 1] <= bottom)
         ends = (boxes[:, 2] >= self.left) & (boxes[:, 3] >= self.top)
@@ -105,12 +105,12 @@ class MeshPart:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Straight strokes with round ends; those without length are dots.
+    """Straight strokes with round ends; strokes without length are dots.
 
     Parameters
     ----------
     view : View
-        What is outside of it does not show.
+        The view outside of which nothing shows.
     ends : ndarray
         Shape (n, 2, 2), float64: first and last point of each, in pixels of the canvas.
     width : float
@@ -124,7 +124,7 @@ class Strokes:
 
     @cached_property
     def placed(self) -> Float64Array:
-        """The ends of those that show, in units of the sheet from the view's corner."""
+        """The ends of the strokes that show, in units of the sheet from the view's corner."""
         boxes = np.concatenate([self.ends.min(axis=1), self.ends.max(axis=1)], axis=1)
         return self.view.place(self.ends[self.view.touches(boxes)])
 
@@ -142,7 +142,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A line of text: what `x` is for its width, the base of its letters at `y`."""
+    """A line of text with its baseline at `y`; `align` says which point of it is at `x`."""
 
     x: float
     y: float
@@ -153,12 +153,12 @@ class Label:
 
     @property
     def width(self) -> float:
-        """Its width in the raster's letters; those of other programs are about as wide."""
+        """Width in the raster's font; the fonts of other programs are about as wide."""
         return font_of(self.size).getlength(self.text)
 
     @property
     def left(self) -> float:
-        """Where it begins."""
+        """Left end of the text."""
         return self.x - self.width * {"start": 0.0, "middle": 0.5, "end": 1.0}[self.align]
 
 
@@ -177,7 +177,7 @@ class Sheet:
 
 @cache
 def font_of(size: float) -> ImageFont.FreeTypeFont:
-    """The letters of a raster: those that Pillow brings along."""
+    """Font of a raster's labels: the one that Pillow brings along."""
     font = ImageFont.load_default(size=size)
     if not isinstance(font, ImageFont.FreeTypeFont):
         raise ImportError("captions need a Pillow that was built with FreeType")

@@ -46,7 +46,7 @@ def write_sheet_pdf(sheet: Sheet, stream: BinaryIO) -> None:
 
 
 class _SheetPage:
-    """The page of a sheet: its content, and the objects that this draws."""
+    """The page of a sheet: its content, and the objects that the content draws."""
 
     def __init__(self, pdf: Any, sheet: Sheet) -> None:
         self._pdf = pdf
@@ -64,7 +64,7 @@ class _SheetPage:
         }
 
     def draw(self, item: Any) -> None:
-        """Draw an item; what it sets does not outlast it."""
+        """Draw an item; the graphics state is restored after it."""
         self._content.push_state()
         self._painters[type(item)](item)
         self._content.pop_state()
@@ -131,7 +131,7 @@ class _SheetPage:
         content.end_text()
 
     def _named(self, letter: str, item: Any) -> str:
-        """Add an object that the content draws; its name."""
+        """Add an object that the content draws; returns its name."""
         name = f"{letter}{len(self._objects)}"
         self._objects[name] = add(self._pdf, item)
         return name
@@ -142,7 +142,7 @@ def _unit_color(color: Color) -> tuple[float, ...]:
 
 
 def _image_stream(array: UInt8Array) -> Any:
-    """An image of shape (h, w, 3), in the compression of PNG, which PDF knows."""
+    """Stream of an image of shape (h, w, 3), in the compression of PNG, which PDF knows."""
     height, width = array.shape[:2]
     parameters = {"Predictor": 15, "Colors": 3, "BitsPerComponent": 8, "Columns": width}
     extra = {"Type": "/XObject", "Subtype": "/Image", "Width": width, "Height": height}

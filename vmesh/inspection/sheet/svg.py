@@ -101,7 +101,7 @@ class _Writer:
             self._document.write(_element("path", **path))
 
     def _window(self, view: View, box: str) -> AbstractContextManager[None]:
-        """A drawing of its own that fills the place of a view, and shows nothing beyond."""
+        """A nested drawing that fills the place of a view, and shows nothing beyond."""
         place = {name: str(getattr(view, name)) for name in ("x", "y", "width", "height")}
         attributes = {**place, "viewBox": box, "preserveAspectRatio": "none", "overflow": "hidden"}
         window: AbstractContextManager[None] = self._document.element("svg", attributes)

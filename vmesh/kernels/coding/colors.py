@@ -1,4 +1,12 @@
-"""Colour levels, each as its difference from the mean of its parents (spec, section 7)."""
+"""Colour levels, each as its difference from the mean of its parents (spec, section 7).
+
+References
+----------
+X. Wu, N. Memon, "Context-based, adaptive, lossless image coding", IEEE Transactions on
+Communications 45(4), 1997: contexts of how much a sample's neighbours vary. P. Elias, "Universal
+codeword sets and representations of the integers", IEEE Transactions on Information Theory 21(2),
+1975: the gamma code of large differences.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +33,9 @@ LARGEST_DEVIATION = 511
 SIZE_CONTEXTS = N_UNARY + 2
 COMPONENT_CONTEXTS = N_SPREADS * SIZE_CONTEXTS + 3
 
-# Probabilities at the start, in 1/32, found on average in meshes of ten photographs, and how
-# many bits they count as. Whether the size of a difference is more than 0, than 1, than each number
-# from 2 on, for each spread; for the first component and for the others.
+# Initial probabilities, in 1/32, the means of meshes of ten photographs, that the size of a
+# difference is more than 0, more than 1, and more than each number from 2 on, for each spread; for
+# the first component and for the others. They count as `LEVELS_SEEN` bits.
 LEVEL_PRIORS = (
     (
         (20, 25, 23, 26, 27, 27, 28, 29, 30, 31, 31, 31, 31, 31),
@@ -57,8 +65,8 @@ def code_levels(
 ) -> int:
     """Code colour levels, each as its difference from the mean of its parents.
 
-    All parents count alike for the first component; for the others those count more that are
-    closer in the first. The context of a difference is how far the parents' levels are spread.
+    All parents count equally in the first component; in the others a parent counts the more, the
+    closer it is in the first. The context of a difference is the spread of the parents' levels.
 
     Parameters
     ----------
@@ -157,9 +165,9 @@ def spread_of(
 
 @lean_kernel
 def code_size(coder: Int64Array, data: UInt8Array, model: Int64Array, c: int, size: int) -> int:
-    """Code the size of a difference: in unary up to N_UNARY, what is more in bits of its length.
+    """Code the size of a difference: in unary up to N_UNARY, what is beyond by its gamma code.
 
-    Uses SIZE_CONTEXTS contexts from c. Returns -1 if what is more is longer than MAX_SIZE_LENGTH.
+    Uses SIZE_CONTEXTS contexts from c. Returns -1 if that is longer than MAX_SIZE_LENGTH.
     """
     coded = 0
     while coded < N_UNARY:
@@ -180,7 +188,7 @@ def code_size(coder: Int64Array, data: UInt8Array, model: Int64Array, c: int, si
 
 
 def initial_level_model(n_components: int) -> Int64Array:
-    """Model of the levels at the start, shape (c * COMPONENT_CONTEXTS, 2), int64."""
+    """Initial model of the levels, shape (c * COMPONENT_CONTEXTS, 2), int64."""
     model = even_model(n_components * COMPONENT_CONTEXTS)
     for z in range(n_components):
         for spread in range(N_SPREADS):

@@ -25,8 +25,8 @@ N_SLOPES = 5
 FLIP_CONTEXTS = 2 * N_ANGLES * N_SLOPES
 MAX_FLIPS = 1  # for each half-edge
 
-# Whether an edge is flipped, when it is looked at again and for the first time; for each class of
-# angles and in it for each slope.
+# Initial probabilities, in 1/32, that an edge is flipped: first where it is looked at again, then
+# where it is looked at for the first time; for each class of angles, a value for each slope.
 # fmt: off
 FLIP_PRIORS = (
     2, 3, 3, 4, 6, 9, 10, 10, 13, 17, 9, 10, 9, 12, 16, 8, 8, 8, 10, 15,
@@ -59,7 +59,7 @@ def code_flips(
     removed: Int64Array,
     created: Int64Array,
 ) -> int:
-    """Code which edges of the Delaunay triangulation are flipped, one bit for each in question.
+    """Code which edges of the Delaunay triangulation are flipped, a bit for each edge in question.
 
     A queue holds the edges in question: at first all inner edges, then the four sides around each
     flipped one. An edge whose quad is not strictly convex is passed over. The context is made of
@@ -152,7 +152,7 @@ def code_flips(
 
 
 def initial_flip_model() -> Int64Array:
-    """Model of the flips at the start, shape (FLIP_CONTEXTS, 2), int64."""
+    """Initial model of the flips, shape (FLIP_CONTEXTS, 2), int64."""
     model = even_model(FLIP_CONTEXTS)
     model[:, 0] = np.array(FLIP_PRIORS) << 11
     model[:, 1] = FLIPS_SEEN

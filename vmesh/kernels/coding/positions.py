@@ -36,7 +36,7 @@ def code_split(
     high: int,
     left: int,
 ) -> int:
-    """Code how many of `count` points lie in the first half of a box, between low and high."""
+    """Code how many of `count` points lie in the first half of a box: `left`, from low to high."""
     depth = 0
     size = 0
     while count >> (size + 1) > 0:
@@ -65,10 +65,10 @@ def code_positions(
     columns: int,
     rows: int,
 ) -> None:
-    """Code the points of a lattice by halving boxes and counting the points in the first half.
+    """Code the points of a lattice along a kd-tree, by the number in the first half of each box.
 
-    The first box has sides of powers of two and holds the lattice. The longer side is halved, the
-    width where they are equal; the first half is coded before the second.
+    The box of the root has sides of powers of two and holds the lattice. The longer side is halved,
+    the width where they are equal; the first half is coded before the second.
 
     Parameters
     ----------
@@ -136,10 +136,10 @@ def sites(x: int, y: int, across: int, down: int, columns: int, rows: int) -> in
 
 
 def initial_split_model() -> Int64Array:
-    """Model of the numbers of points at the start, shape (SPLIT_CONTEXTS, 2), int64.
+    """Initial model of the numbers of points, shape (SPLIT_CONTEXTS, 2), int64.
 
-    Each of a few points lies in either half alike; but in a box of two or four sites it lies in
-    the last one, where the centres of pixels are on a lattice of half pixels.
+    Each of a few points is equally likely to lie in either half; but in a box of two or four sites
+    it is expected in the last one, where the centres of pixels are on a lattice of half pixels.
     """
     model = even_model(SPLIT_CONTEXTS)
     for count in range(1, N_SMALL):
@@ -154,7 +154,7 @@ def initial_split_model() -> Int64Array:
 
 
 def _search_steps(count: int) -> list[tuple[int, int]]:
-    """The bounds between which a binary search of 0 to `count` asks for each middle."""
+    """Bounds between which a binary search of 0 to `count` asks for each middle."""
     steps = [(0, 0)] * count
     pending = [(0, count)]
     while pending:

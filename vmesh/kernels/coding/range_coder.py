@@ -3,13 +3,14 @@
 ::
 
     range               2**32 at first, kept at 2**24 or more by shifting bytes out
-    model[c] = p, n     of context c: probability of a 1 in units of 2**-16, times seen
+    model[c] = p, n     of context c: probability of a 1 in units of 2**-16, bits seen
     split               (range >> 12) * (p >> 4): the part of the range that stands for a 1
     after a bit         p += (65536 * bit - p) // (n + 2), n counted up to RATE_LIMIT
 
 References
 ----------
-G. N. N. Martin, "Range encoding", 1979; the byte-wise carry is that of I. Pavlov's LZMA.
+G. N. N. Martin, "Range encoding: an algorithm for removing redundancy from a digitised message",
+Video and Data Recording Conference, 1979. The byte-wise carry is that of I. Pavlov's LZMA.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ def start(coder: Int64Array, data: UInt8Array, decoding: int) -> None:
 
 @kernel
 def finish(coder: Int64Array, data: UInt8Array) -> int:
-    """Write what is left and return the length; the reader supplies zeros that are cut off."""
+    """Write what is left; returns the length without the zeros that the reader supplies."""
     # The number within the range that ends in the most zero bits.
     for zeros in range(32, -1, -1):
         value = ((coder[LOW] + (1 << zeros) - 1) >> zeros) << zeros
@@ -126,7 +127,7 @@ def code_bit(coder: Int64Array, data: UInt8Array, model: Int64Array, c: int, bit
 
 
 def even_model(n_contexts: int) -> Int64Array:
-    """Model of a number of contexts in which a 0 is as probable as a 1, shape (n, 2), int64."""
+    """Model of some contexts, in each of which a 0 is as probable as a 1, shape (n, 2), int64."""
     model = np.zeros((n_contexts, 2), dtype=np.int64)
     model[:, 0] = 1 << 15
     return model

@@ -1,4 +1,10 @@
-"""Lists of triangles, each by its differences from the one before (spec, section 8.3)."""
+"""Lists of triangles, each by its differences from the one before (spec, section 8.3).
+
+References
+----------
+P. Elias, "Universal codeword sets and representations of the integers", IEEE Transactions on
+Information Theory 21(2), 1975: the gamma code, whose bits are coded here by adaptive contexts.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +33,7 @@ def code_number(coder: Int64Array, data: UInt8Array, model: Int64Array, c: int, 
             return -1
     value = 1
     for i in range(coded):
-        # The two bits after the leading one are worth a context each, the rest share one.
+        # The two bits after the leading one have contexts of their own, the rest share one.
         context = c + 32 + coded * 4 + (value if i < 2 else 0)
         bit = ((number + 1) >> (coded - 1 - i)) & 1
         value = (value << 1) | code_bit(coder, data, model, context, bit)
