@@ -58,7 +58,8 @@ class SampledDraft:
         self.n_vertices = len(self._vertices)
         colors, equations = fit_colors(self._image, self._vertices, self._triangles, UNIT)
         # At the solution of A'A c = A'y the squared error is y'y - c'A'y.
-        fitted = sum(float(e.moments @ colors[:, z]) for z, e in enumerate(equations))
+        # Not by a dot product, whose order of summing is that of a BLAS and its threads.
+        fitted = sum(float((e.moments * colors[:, z]).sum()) for z, e in enumerate(equations))
         squares = np.square(self._image, dtype=np.float64)
         if self._image.shape[2] == 4:
             squares[:, :, :3] *= self._image[:, :, 3:] / peak_of(self._image)
