@@ -312,16 +312,16 @@ def test_triangles_without_pixels_keep_the_colors_of_the_mesh(
     assert (drawn < 190).any()
 
 
-def test_pixels_that_do_not_show_are_not_fitted_to(coffee: np.ndarray, tmp_path: Path) -> None:
-    alpha = np.zeros(coffee.shape[:2], dtype=np.uint8)
-    alpha[:, :300] = 255
-    hidden = np.where(alpha[:, :, None] > 0, coffee, 255 - coffee)
-    mesh = vmesh.encode(np.dstack([coffee, alpha]), vertices=2000)
-    for name, colors in (("plain", coffee), ("inverse", hidden)):
+def test_pixels_that_do_not_show_are_not_fitted_to(photograph: np.ndarray, tmp_path: Path) -> None:
+    alpha = np.zeros(photograph.shape[:2], dtype=np.uint8)
+    alpha[:, :150] = 255
+    hidden = np.where(alpha[:, :, None] > 0, photograph, 255 - photograph)
+    mesh = vmesh.encode(np.dstack([photograph, alpha]), vertices=500)
+    for name, colors in (("plain", photograph), ("inverse", hidden)):
         vmesh.export(mesh, tmp_path / f"{name}.svg", fit=np.dstack([colors, alpha]))
     assert (tmp_path / "plain.svg").read_bytes() == (tmp_path / "inverse.svg").read_bytes()
     vmesh.export(mesh, tmp_path / "own.svg")
-    visible = flatten(np.dstack([coffee, alpha]))
+    visible = flatten(np.dstack([photograph, alpha]))
     fitted, own = (
         SVG_RENDERERS["librsvg"](tmp_path / f"{name}.svg", 1) for name in ("plain", "own")
     )
@@ -344,17 +344,20 @@ def test_what_is_no_photograph_of_the_mesh_is_not_fitted_to(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.fixture(scope="module")
+def grey_and_alpha(photograph: np.ndarray) -> dict[str, vmesh.Mesh]:
+    fade = np.linspace(0, 255, photograph.shape[1]).astype(np.uint8)
+    alpha = np.broadcast_to(fade, photograph.shape[:2])
+    pictures = {"grey": photograph[:, :, 1], "alpha": np.dstack([photograph, alpha])}
+    return {name: vmesh.encode(picture, vertices=800) for name, picture in pictures.items()}
+
+
 @pytest.mark.parametrize("renderer", BLENDING)  # CairoSVG draws no such mask
-@pytest.mark.parametrize("components", [1, 4])
+@pytest.mark.parametrize("name", ["grey", "alpha"])
 def test_grey_and_alpha_are_drawn(
-    chelsea: np.ndarray, renderer: str, components: int, tmp_path: Path
+    grey_and_alpha: dict[str, vmesh.Mesh], renderer: str, name: str, tmp_path: Path
 ) -> None:
-    picture = chelsea[:, :, 1]
-    if components == 4:
-        fade = np.linspace(0, 255, chelsea.shape[1]).astype(np.uint8)
-        alpha = np.broadcast_to(fade, chelsea.shape[:2])
-        picture = np.dstack([chelsea, alpha])
-    mesh = vmesh.encode(picture, vertices=3000)
+    mesh = grey_and_alpha[name]
     path = tmp_path / "picture.svg"
     vmesh.export(mesh, path)
     shown = flatten(vmesh.render(mesh))
@@ -365,11 +368,13 @@ def test_grey_and_alpha_are_drawn(
 @pytest.mark.parametrize("suffix", ["svg", "pdf"])
 @pytest.mark.parametrize("components", [1, 3, 4])
 def test_nothing_is_drawn_beyond_a_tilted_mesh(
-    chelsea: np.ndarray, components: int, suffix: str, tmp_path: Path
+    photograph: np.ndarray, components: int, suffix: str, tmp_path: Path
 ) -> None:
-    opaque = np.dstack([chelsea, np.full(chelsea.shape[:2], 255, dtype=np.uint8)])
-    picture = chelsea[:, :, 0] if components == 1 else opaque[:, :, :components]
-    tilted = vmesh.encode(picture, vertices=500).transform((0.8, 0.6, -0.6, 0.8, 0, 0))
+    opaque = np.dstack([photograph, np.full(photograph.shape[:2], 255, dtype=np.uint8)])
+    picture = photograph[:, :, 0] if components == 1 else opaque[:, :, :components]
+    tilted = vmesh.encode(picture, method="blue-noise", vertices=250).transform(
+        (0.8, 0.6, -0.6, 0.8, 0, 0)
+    )
     path = tmp_path / f"tilted.{suffix}"
     vmesh.export(tilted, path)
     renderer = SVG_RENDERERS["librsvg"] if suffix == "svg" else PDF_RENDERERS["poppler"]
@@ -397,47 +402,40 @@ def test_every_triangle_has_a_path(
     assert len(etree.parse(drawings[mode]).findall(f".//{SVG}path")) == detailed.n_triangles
 
 
-def test_compressed_svg_holds_the_same_document(coffee: np.ndarray, tmp_path: Path) -> None:
-    mesh = vmesh.encode(coffee, vertices=200)
-    vmesh.export(mesh, tmp_path / "a.svg")
-    vmesh.export(mesh, tmp_path / "a.svgz")
+def test_compressed_svg_holds_the_same_document(small: vmesh.Mesh, tmp_path: Path) -> None:
+    vmesh.export(small, tmp_path / "a.svg")
+    vmesh.export(small, tmp_path / "a.svgz")
     plain = (tmp_path / "a.svg").read_bytes()
     assert gzip.decompress((tmp_path / "a.svgz").read_bytes()) == plain
 
 
 @pytest.mark.parametrize("suffix", ["svg", "svgz", "pdf"])
-def test_the_same_mesh_gives_the_same_bytes(
-    coffee: np.ndarray, tmp_path: Path, suffix: str
-) -> None:
-    mesh = vmesh.encode(coffee, vertices=200)
+def test_the_same_mesh_gives_the_same_bytes(small: vmesh.Mesh, tmp_path: Path, suffix: str) -> None:
     for name in ("a", "b"):
-        vmesh.export(mesh, tmp_path / f"{name}.{suffix}")
+        vmesh.export(small, tmp_path / f"{name}.{suffix}")
     assert (tmp_path / f"a.{suffix}").read_bytes() == (tmp_path / f"b.{suffix}").read_bytes()
 
 
 @pytest.mark.parametrize("mode", ["gradient", "exact", "auto", "flat"])
 def test_progress_names_the_stages_of_each_layer(
-    coffee: np.ndarray, tmp_path: Path, mode: Mode
+    small: vmesh.Mesh, tmp_path: Path, mode: Mode
 ) -> None:
     stages: list[str] = []
-    mesh = vmesh.encode(coffee, vertices=200)
-    vmesh.export(mesh, tmp_path / "a.svg", mode=mode, tolerance=0.5, progress=stages.append)
+    vmesh.export(small, tmp_path / "a.svg", mode=mode, tolerance=0.5, progress=stages.append)
     assert stages == ["fitting"] + (len(stages) // 2) * ["gradients", "paths"]
     assert len(stages) == Style(mode).n_stages
 
 
-def test_an_unknown_mode_is_refused_and_leaves_no_file(coffee: np.ndarray, tmp_path: Path) -> None:
-    mesh = vmesh.encode(coffee, vertices=200)
+def test_an_unknown_mode_is_refused_and_leaves_no_file(small: vmesh.Mesh, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="mode"):
-        vmesh.export(mesh, tmp_path / "a.svg", mode="round")
+        vmesh.export(small, tmp_path / "a.svg", mode="round")
     assert not list(tmp_path.iterdir())
 
 
-def test_flat_colors_keep_within_the_limits(coffee: np.ndarray, tmp_path: Path) -> None:
-    mesh = vmesh.encode(coffee, vertices=200)
+def test_flat_colors_keep_within_the_limits(small: vmesh.Mesh, tmp_path: Path) -> None:
     for limits in (vmesh.Limits(max_pixels=1000), vmesh.Limits(max_work=1000)):
         with pytest.raises(vmesh.LimitError):
-            vmesh.export(mesh, tmp_path / "a.svg", mode="flat", limits=limits)
+            vmesh.export(small, tmp_path / "a.svg", mode="flat", limits=limits)
     assert not list(tmp_path.iterdir())
 
 
