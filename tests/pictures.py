@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.kernels.scanline import SUBPIXEL, draw
@@ -92,6 +93,12 @@ def drawn(mesh: Mesh) -> SampleArray:
     positions = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
     draw(positions, mesh.triangles, colors, raster)
     return raster
+
+
+def share_apart(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
+    """Share of the pixels of two pictures that are more than a level apart in some component."""
+    apart = np.abs(np.subtract(first, second, dtype=np.float64)).max(axis=-1) > 1
+    return float(apart.mean())
 
 
 def psnr(first: UInt8Array, second: UInt8Array) -> float:

@@ -3,7 +3,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from tests.strategies import lattices
 from vmesh.color_lattice import ColorLattice
@@ -101,9 +100,7 @@ def test_depths_out_of_range_are_refused(depth: int) -> None:
         ColorLattice((1,), depth)
 
 
-@given(st.sampled_from([(3,), (2, 3), (2, 4), (2, 2, 3)]))
+@pytest.mark.parametrize("shape", [(3,), (2, 4), (2, 2, 3)])
 def test_colors_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
-    if shape == (2, 3):
-        return
     with pytest.raises(ValueError, match="shape"):
         ColorLattice((1, 1, 1)).levels_from_colors(np.zeros(shape, dtype=np.uint8))

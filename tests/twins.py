@@ -314,6 +314,7 @@ def predicted_changes(
         own = [face[(first + i) % 3] for i in range(3)]
         corners = [(int(points[u, 0]), int(points[u, 1])) for u in own]
         sides = np.array([corners[1], corners[2]], dtype=float) - corners[0]
+        gradients = np.linalg.solve(sides, colors[own[1:]] - colors[own[0]])
         fine = [(128 * x, 128 * y) for x, y in corners]
         for y, x in np.ndindex(height, width):
             parts = pixel_weights(fine, x, y)
@@ -321,10 +322,8 @@ def predicted_changes(
                 continue
             weights = np.array(parts) / sum(parts)
             for z in range(image.shape[2]):
-                values = colors[own, z]
-                gradient = np.linalg.solve(sides, values[1:] - values[0])
-                residual = float(image[y, x, z]) - weights @ values
-                rows.append((z, residual, weights[0], *(weights[0] * gradient)))
+                residual = float(image[y, x, z]) - weights @ colors[own, z]
+                rows.append((z, residual, weights[0], *(weights[0] * gradients[:, z])))
     table = np.array(rows)
     changes = {}
     for step in steps:

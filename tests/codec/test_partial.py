@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -46,8 +47,7 @@ def test_a_longer_start_shows_a_better_picture() -> None:
         psnr(image, render(load_start(data, length)))
         for length in np.linspace(first + 4, len(data) - 4, 6).astype(int)
     ]
-    assert quality == sorted(quality)
-    assert quality[-1] > quality[0] + 6
+    assert all(a < b for a, b in pairwise(quality))
     assert quality[-1] == psnr(image, render(loads(data)))
 
 
@@ -106,4 +106,3 @@ def test_damaged_starts_of_files_raise_nothing_but_errors_of_vmesh() -> None:
             except VmeshError as error:
                 outcomes.add(getattr(error, "code", "limit"))
     assert {"mesh", "truncated", "positions", "header"} <= outcomes
-    assert len(split(data[0])[1]) == 1

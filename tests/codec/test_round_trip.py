@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.codec import samples
-from tests.codec.damage import header_fields, split
+from tests.codec.damage import file_of, header_fields, split
 from tests.pictures import PICTURES, drawn
 from tests.strategies import flipped, meshes, raster_sorted
 from vmesh.arrays import Int32Array, UInt8Array
@@ -227,9 +227,12 @@ def test_unknown_ancillary_chunks_are_kept_as_they_are() -> None:
     assert split(dumps(loads(data)))[1][:-1] == [*unknown]
 
 
-def test_a_zlib_stream_of_any_strength_is_read() -> None:
-    content = dict(split(dumps(samples.with_metadata()))[1])[b"i"]
-    assert zlib.decompress(content) == b"profile" * 20
+@pytest.mark.parametrize("strength", range(10))
+def test_a_zlib_stream_of_any_strength_is_read(strength: int) -> None:
+    profile = b"profile" * 20
+    header, chunks = split(dumps(samples.grey()))
+    data = file_of(header, [(b"i", zlib.compress(profile, strength)), *chunks])
+    assert loads(data).metadata.icc == profile
 
 
 def test_files_and_streams_are_written_and_read(tmp_path: Path) -> None:

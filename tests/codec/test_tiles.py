@@ -117,9 +117,9 @@ def test_a_mesh_that_is_moved_has_no_tiles() -> None:
 # --- damage ------------------------------------------------------------------------------------
 
 
-def places() -> list[int]:
-    """Where the chunk of each tile starts, and where the file ends."""
-    header, (grid, *chunks) = split(DATA)
+def places(data: bytes = DATA) -> list[int]:
+    """Where the chunk of each tile of a file starts, and where the file ends."""
+    header, (grid, *chunks) = split(data)
     ends = np.cumsum([len(file_of(header, [grid])), *(len(chunk_of(*chunk)) for chunk in chunks)])
     return [int(end) for end in ends]
 
@@ -173,17 +173,19 @@ def test_where_no_tile_is_left_to_tell_it_a_corner_has_the_mean_colour() -> None
 
 
 def test_every_start_gives_the_tiles_that_are_whole() -> None:
-    ends = places()[1:]
-    for length in range(len(DATA)):
+    whole = tiled(40, 30, 16, 1, n_vertices=60, step=4)
+    data = dumps(whole)
+    ends = places(data)[1:]
+    pieces = [piece_of(whole, tile) for tile in GRID.tiles()]
+    for length in range(len(data)):
         if length < ends[0]:
             with pytest.raises(FormatError):
-                loads(DATA[:length], allow_partial=True)
+                loads(data[:length], allow_partial=True)
             continue
-        mesh = load_rest(DATA[:length])
+        mesh = load_rest(data[:length])
         n_whole = sum(end <= length for end in ends)
-        for number, tile in enumerate(GRID.tiles()):
-            if number < n_whole:
-                assert piece_of(mesh, tile) == piece_of(MESH, tile)
+        for tile, piece in list(zip(GRID.tiles(), pieces, strict=True))[:n_whole]:
+            assert piece_of(mesh, tile) == piece
 
 
 def test_a_file_whose_tiles_are_all_damaged_is_refused() -> None:

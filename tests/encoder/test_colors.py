@@ -82,13 +82,16 @@ def test_hidden_colors_are_those_of_the_nearest_visible_pixel() -> None:
     filled = with_hidden_colors_replaced(picture)
     assert (filled[:, :, :3] == (20, 90, 160)).all()
     assert np.array_equal(filled[:, :, 3], picture[:, :, 3])
-    opaque = noise(5, 6, 4)
-    opaque[:, :, 3] = 255
-    assert with_hidden_colors_replaced(opaque) is opaque
-    assert with_hidden_colors_replaced(opaque[:, :, :3]) is not None
 
 
-def test_a_fully_transparent_picture_hides_nothing() -> None:
+@pytest.mark.parametrize("n_components", [1, 3, 4])
+def test_a_picture_that_hides_no_colors_stays_what_it_is(n_components: int) -> None:
+    picture = noise(5, 6, n_components)
+    picture[:, :, 3:] = 255
+    assert np.array_equal(with_hidden_colors_replaced(picture), picture)
+
+
+def test_what_a_fully_transparent_picture_hides_leaves_no_trace() -> None:
     picture = noise(5, 6, 4)
     picture[:, :, 3] = 0
     filled = with_hidden_colors_replaced(picture)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given, settings
+from PIL import Image
 
 from tests.pictures import (
     PICTURES,
@@ -27,7 +29,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.codec.reader import loads
 from vmesh.codec.writer import dumps
 from vmesh.encoder.colors import sample_colors
-from vmesh.encoder.image import as_image, premultiplied_planes
+from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.settings import MAX_EFFORT, Method, Sampler, Settings
 from vmesh.formats.raster.picture import flatten
@@ -133,15 +135,15 @@ def test_a_constant_picture_takes_next_to_no_bytes(color: tuple[int, ...], effor
 
 
 def test_a_ramp_needs_only_its_corners() -> None:
-    picture = ramp(64, 64)
-    assert psnr_of(picture, vertices=4, color_step=1) > 42
+    assert encode(ramp(64, 64)).n_vertices == 4
 
 
 def test_an_edge_between_two_colors_is_held_by_few_vertices() -> None:
     picture = step_edge(48, 64)
     mesh = encode(picture, quality=90)
-    assert psnr(drawn(mesh), picture) > 40
-    assert len(dumps(mesh)) < 150
+    spread = encode(picture, method="blue-noise", vertices=4 * mesh.n_vertices)
+    assert psnr(drawn(mesh), picture) > psnr(drawn(spread), picture)
+    assert len(dumps(mesh)) < len(dumps(spread))
 
 
 # --- Goals ----------------------------------------------------------------------------------------
@@ -259,46 +261,54 @@ def test_a_psnr_out_of_reach_is_refused_with_what_is_reached() -> None:
 def test_a_higher_quality_is_never_further_from_the_picture(cup: UInt8Array, effort: int) -> None:
     meshes = [encode(cup, quality=q, effort=effort) for q in (0, 10, 30, 50, 70, 90, 100)]
     reached = [psnr(drawn(mesh), cup) for mesh in meshes]
-    assert reached == sorted(reached)
-    assert reached[-2] > reached[1] + 8
+    assert all(a < b for a, b in pairwise(reached))
     sizes = [len(dumps(mesh)) for mesh in meshes]
-    assert sizes == sorted(sizes)
+    assert all(a < b for a, b in pairwise(sizes))
 
 
-def test_the_highest_quality_is_close_to_the_picture(cat: UInt8Array, cup: UInt8Array) -> None:
-    assert psnr_of(cup, quality=100) > 38
-    assert psnr_of(cat, quality=100) > 38
+@pytest.mark.parametrize("part", ["cat", "cup"])
+def test_the_highest_quality_is_closer_to_the_picture_than_a_jpeg_of_more_bytes(
+    part: str, request: pytest.FixtureRequest
+) -> None:
+    picture: UInt8Array = request.getfixturevalue(part)
+    mesh = encode(picture, quality=100)
+    jpeg = io.BytesIO()
+    Image.fromarray(picture).save(jpeg, "JPEG", quality=90)
+    assert len(dumps(mesh)) < len(jpeg.getvalue())
+    assert psnr(drawn(mesh), picture) > psnr(np.asarray(Image.open(jpeg)), picture)
 
 
 def test_a_quality_is_about_the_same_at_every_effort(cat: UInt8Array) -> None:
-    reached = [psnr_of(cat, quality=75, effort=effort) for effort in (2, 5, 9)]
-    assert max(reached) - min(reached) < 1.5
+    lower, higher = (psnr_of(cat, quality=quality) for quality in (60, 90))
+    for effort in (2, 5, 9):
+        assert lower < psnr_of(cat, quality=75, effort=effort) < higher
 
 
-def test_more_effort_is_not_worse_at_the_same_number_of_vertices(
+def test_more_effort_is_better_at_the_same_number_of_vertices(
     cat: UInt8Array, cup: UInt8Array, coffee: UInt8Array
 ) -> None:
     # What little there is to gain on one small picture is up to chance.
-    parts = (cat, cup, coffee[:96, :128], coffee[200:296, 300:428])
+    parts = (cat, cup[:64, :80], coffee[:64, :80], coffee[200:264, 300:380])
     reached = [
-        np.mean([psnr_of(part, vertices=250, effort=effort) for part in parts])
+        np.mean([psnr_of(part, vertices=150, effort=effort) for part in parts])
         for effort in (1, 3, 5, 9)
     ]
-    assert all(b > a - 0.1 for a, b in pairwise(reached))
-    assert reached[2] > reached[0] + 1.5
+    assert all(a < b for a, b in pairwise(reached))
 
 
-def test_adaptive_meshes_are_far_better_at_the_same_number_of_vertices(cup: UInt8Array) -> None:
+def test_adaptive_meshes_are_better_with_half_the_vertices_and_fewer_bytes(
+    cup: UInt8Array,
+) -> None:
     plain = encode(cup, method="blue-noise", vertices=400)
-    adaptive = encode(cup, vertices=plain.n_vertices)
-    assert adaptive.n_vertices == plain.n_vertices
-    assert psnr(drawn(adaptive), cup) > psnr(drawn(plain), cup) + 1.5
-    assert len(dumps(adaptive)) < 1.5 * len(dumps(plain))
+    adaptive = encode(cup, vertices=plain.n_vertices // 2)
+    assert psnr(drawn(adaptive), cup) > psnr(drawn(plain), cup)
+    assert len(dumps(adaptive)) < len(dumps(plain))
 
 
-def test_more_vertices_are_closer_to_the_picture(coffee: UInt8Array) -> None:
-    reached = [psnr_of(coffee, method="blue-noise", vertices=n) for n in (500, 2000, 8000)]
-    assert reached[0] + 1 < reached[1] < reached[2] - 1
+@pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
+def test_more_vertices_are_closer_to_the_picture(cup: UInt8Array, method: str) -> None:
+    reached = [psnr_of(cup, method=method, vertices=n) for n in (60, 250, 1000)]
+    assert all(a < b for a, b in pairwise(reached))
 
 
 def test_a_smaller_gamma_gives_more_vertices(chelsea: UInt8Array) -> None:
@@ -308,12 +318,12 @@ def test_a_smaller_gamma_gives_more_vertices(chelsea: UInt8Array) -> None:
     assert len(set(counts)) == len(counts)
 
 
-def test_fitted_colors_are_closer_to_the_picture_than_sampled_ones(coffee: UInt8Array) -> None:
+def test_fitted_colors_are_closer_to_the_picture_than_sampled_ones(cup: UInt8Array) -> None:
     fitted, sampled = (
-        psnr_of(coffee, method="blue-noise", vertices=3000, colors=colors)
+        psnr_of(cup, method="blue-noise", vertices=300, colors=colors)
         for colors in ("fitted", "sampled")
     )
-    assert fitted > sampled + 1
+    assert fitted > sampled
 
 
 @pytest.mark.parametrize("method", ["adaptive", "blue-noise"])
@@ -418,7 +428,10 @@ def test_progress_names_the_search_for_a_size_last() -> None:
     stages: list[str] = []
     encode(noise(24, 24), target_size=200, progress=stages.append)
     assert tuple(dict.fromkeys(stages)) == STAGES
-    stages.clear()
+
+
+def test_progress_names_no_stages_that_blue_noise_does_without() -> None:
+    stages: list[str] = []
     encode(noise(24, 24), method="blue-noise", progress=stages.append)
     assert stages == ["sampling", "colors"]
 
@@ -458,8 +471,10 @@ def test_a_picture_too_wide_for_a_file_is_refused() -> None:
 
 def test_lists_and_views_are_taken() -> None:
     picture = noise(12, 10)
-    assert as_image(picture[::-1, ::2]).flags.c_contiguous
-    assert encode(picture[::2, ::-1]) == encode(picture[::2, ::-1].copy())
+    rows: list[UInt8Array] = list(picture)
+    assert encode(rows) == encode(picture)
+    view = picture[::2, ::-1]
+    assert encode(view) == encode(view.copy())
 
 
 def test_the_picture_is_left_as_it_is() -> None:

@@ -8,12 +8,15 @@ import pytest
 from tests import twins
 from tests.pictures import PICTURES, disc, drawn, noise
 from vmesh.arrays import UInt8Array
+from vmesh.codec.writer import dumps
 from vmesh.encoder.draft import SampledDraft
+from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import measure_psnr
 from vmesh.encoder.rate_model import lambda_of, lambda_of_quality, vertices_for
+from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import Settings
 from vmesh.formats.raster.rendering import render
@@ -78,7 +81,24 @@ def test_a_sampled_draft_knows_its_error(n_components: int) -> None:
         solution = np.linalg.lstsq(weights, values, rcond=None)[0]
         expected += float(np.square(weights @ solution - values).sum())
     assert draft.error == pytest.approx(expected, rel=0.1)
-    assert lambda_of(draft) == pytest.approx(0.045 * draft.error / draft.n_vertices)
+
+
+@pytest.mark.parametrize("n", [100, 300])
+def test_lambda_is_about_what_a_bit_saves_in_a_refined_mesh(chelsea: UInt8Array, n: int) -> None:
+    image = np.ascontiguousarray(chelsea[60:156, 100:228])
+
+    def error_and_bits(n_vertices: int) -> tuple[float, int]:
+        draft.resize(n_vertices)
+        return draft.error, 8 * len(dumps(MeshBuilder(image, Metadata(), None).build(draft)))
+
+    draft = Remesher(image, propose(image, Settings(vertices=4 * n))[1].vertices(), EFFORTS[5])
+    draft.thin(n, lambda: None)
+    draft.refine(n, lambda: None)
+    error, bits = error_and_bits(n)
+    expected = lambda_of(draft)
+    less, more = error_and_bits(round(1.25 * n))
+    saved = (error - less) / (more - bits)
+    assert saved / 2 < expected < 2 * saved
 
 
 def test_a_draft_of_fewer_vertices_has_more_error(chelsea: UInt8Array) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 
@@ -11,14 +12,19 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from tests import twins
 from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
-from tests.surfaces import check_mesh, check_surface, measure_all
+from tests.surfaces import check_mesh
 from vmesh.arrays import Int32Array, UInt8Array
+from vmesh.encoder.colors import fit_components, sample_colors
+from vmesh.encoder.draft import UNIT
 from vmesh.encoder.effort import Effort
+from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.settings import Settings
+from vmesh.mesh.canonical_order import raster_keys
 
 EFFORT = Effort(density=0.1, max_rounds=3, least_gain=0.0, share_decay=0.8)
 
@@ -32,48 +38,33 @@ def proposal(image: UInt8Array, n: int) -> Int32Array:
     return propose(image, Settings(vertices=max(4, n)))[1].vertices()
 
 
-def check(draft: Remesher, image: UInt8Array) -> None:
-    """Check the surface behind a draft and what it says of itself."""
-    height, width = image.shape[:2]
-    surface = draft._surface
-    check_surface(surface, width, height)
-    assert draft.n_vertices == np.count_nonzero(surface.leaving >= 0)
-    kept = surface.errors.copy()
-    visible = draft._picture
-    measure_all(surface, visible)
-    assert kept == pytest.approx(surface.errors, abs=1e-6)
-
-
-def check_result(draft: Remesher, image: UInt8Array) -> None:
-    """Check what the next stage is given: nothing that is not in use, vertices in raster order."""
-    check(draft, image)
+def check_mesh_of(draft: Remesher, image: UInt8Array) -> None:
+    """Check the mesh that a draft has after a stage: its vertices in raster order on centres."""
     vertices, triangles = draft.geometry()
-    assert len(vertices) == draft.n_vertices
-    keys = vertices[:, 1].astype(np.int64) << 32 | vertices[:, 0]
-    assert (np.diff(keys) > 0).all()
+    assert draft.n_vertices == len(vertices)
+    assert (np.diff(raster_keys(vertices)) > 0).all()
     check_mesh(vertices.astype(np.int64), triangles, image.shape[1], image.shape[0])
     inside = (vertices > 0).all(axis=1) & (vertices < 2 * np.array(image.shape[1::-1])).all(axis=1)
     assert (vertices[inside] % 2 == 1).all()
 
 
-def run_all_stages(image: UInt8Array, n_start: int, n: int) -> None:
+def run_all_stages(
+    image: UInt8Array, n_start: int, n: int, check: Callable[[Remesher, UInt8Array], None]
+) -> None:
     draft = draft_of(image, n_start)
-    check_result(draft, image)
-    draft.thin(n, lambda: check(draft, image))
-    check_result(draft, image)
-    draft._exchange(draft.n_vertices, 0.25)
-    check_result(draft, image)
-    draft._settle()
-    check_result(draft, image)
-    draft.refine(draft.n_vertices, lambda: check_result(draft, image))
-    for change in (1.3, 0.7, 1.02, 0.5):
+    check(draft, image)
+    for share in (2, 1):
+        draft.thin(share * n, lambda: None)
+        check(draft, image)
+    draft.refine(draft.n_vertices, lambda: check(draft, image))
+    for change in (1.0, 1.3, 0.7, 1.02, 0.5):
         draft.resize(max(4, round(change * draft.n_vertices)))
-        check_result(draft, image)
+        check(draft, image)
 
 
 @pytest.mark.parametrize("n", [4, 40, 200])
 def test_the_mesh_of_a_photograph_is_sound_after_every_stage(chelsea: UInt8Array, n: int) -> None:
-    run_all_stages(np.ascontiguousarray(chelsea[90:138, 110:174]), 600, n)
+    run_all_stages(np.ascontiguousarray(chelsea[90:138, 110:174]), 600, n, check_mesh_of)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +81,7 @@ def test_the_mesh_of_a_photograph_is_sound_after_every_stage(chelsea: UInt8Array
     ids=["step edge", "checkerboard", "disc", "flat", "tall", "one row", "constant"],
 )
 def test_the_mesh_of_a_synthetic_picture_is_sound_after_every_stage(image: UInt8Array) -> None:
-    run_all_stages(image, image.shape[0] * image.shape[1] // 3, 30)
+    run_all_stages(image, image.shape[0] * image.shape[1] // 3, 30, check_mesh_of)
 
 
 @hypothesis_settings(max_examples=40)
@@ -98,7 +89,30 @@ def test_the_mesh_of_a_synthetic_picture_is_sound_after_every_stage(image: UInt8
 def test_the_mesh_of_a_small_picture_is_sound_after_every_stage(
     image: UInt8Array, density: float, n: int
 ) -> None:
-    run_all_stages(image, round(density * image.shape[0] * image.shape[1]), n)
+    n_start = round(density * image.shape[0] * image.shape[1])
+    run_all_stages(image, n_start, n, check_mesh_of)
+
+
+def least_error(image: UInt8Array, vertices: Int32Array, triangles: Int32Array) -> float:
+    """Squared error of a mesh in the colours that leave the least, alpha and colours alike."""
+    planes = np.ascontiguousarray(premultiplied_planes(image).transpose(1, 2, 0))
+    start = sample_colors(planes, vertices, UNIT)
+    weights = np.ones(image.shape[:2])
+    colors, _ = fit_components(planes, weights, vertices, triangles, UNIT, start)
+    errors = twins.triangle_errors(vertices.astype(np.int64), triangles.tolist(), colors, planes)
+    return sum(errors)
+
+
+@pytest.mark.parametrize("n_components", [1, 3, 4])
+def test_a_draft_knows_its_error_after_every_stage(chelsea: UInt8Array, n_components: int) -> None:
+    def check_error(draft: Remesher, image: UInt8Array) -> None:
+        # Up to where the fit of the colours ends.
+        assert draft.error == pytest.approx(least_error(image, *draft.geometry()), rel=2e-3)
+
+    part = chelsea[90:138, 110:174]
+    fade = np.broadcast_to(np.linspace(0, 255, 64).astype(np.uint8), part.shape[:2])
+    image = np.ascontiguousarray(np.dstack([part, fade])[:, :, :n_components])
+    run_all_stages(image, 600, 60, check_error)
 
 
 @pytest.mark.parametrize("n", [4, 5, 17, 100, 599])

@@ -67,7 +67,7 @@ def test_a_setting_out_of_range_is_refused(setting: dict[str, Any]) -> None:
         {"effort": 1},
         {"effort": 9},
         {"color_step": 1},
-        {"color_step": 255},
+        {"color_step": 65_535},
         {"tile": 32},
         {"tile": 2048},
         {"seed": 2**31},

@@ -104,13 +104,12 @@ def test_a_quality_leaves_about_as_many_vertices_as_without_tiles(cup: UInt8Arra
         assert tiled.n_vertices == pytest.approx(whole.n_vertices, rel=0.15)
 
 
-@pytest.mark.parametrize(("effort", "loss"), [(1, 0.5), (5, 0.25)])
-def test_tiles_cost_little(coffee: UInt8Array, effort: int, loss: float) -> None:
+@pytest.mark.parametrize("effort", [1, 5])
+def test_tiles_cost_less_than_a_tenth_of_the_vertices(coffee: UInt8Array, effort: int) -> None:
     picture = np.ascontiguousarray(coffee[60:316, 120:440])
-    whole, tiled = (
-        encode(picture, vertices=1500, effort=effort, tile=tile) for tile in (None, 128)
-    )
-    assert psnr(drawn(tiled), picture) > psnr(drawn(whole), picture) - loss
+    tiled = encode(picture, vertices=1500, effort=effort, tile=128)
+    whole = encode(picture, vertices=1350, effort=effort)
+    assert psnr(drawn(tiled), picture) > psnr(drawn(whole), picture)
 
 
 def test_vertices_go_where_they_matter() -> None:

@@ -319,7 +319,7 @@ def test_many_copies_of_a_surface_count(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["mesh.ply", "mesh.obj", "mesh.glb"])
-def test_every_truncation_is_refused(name: str, tmp_path: Path) -> None:
+def test_truncations_all_along_a_file_are_refused(name: str, tmp_path: Path) -> None:
     vmesh.export(samples.color(), tmp_path / name)
     data = (tmp_path / name).read_bytes()
     # The last character of an OBJ file is the end of a line, the last but one a digit.

@@ -105,10 +105,10 @@ def test_what_is_not_an_image_is_refused(data: bytes) -> None:
 
 
 @pytest.mark.parametrize("format_name", ["PNG", "JPEG", "WEBP", "TIFF", "GIF", "BMP"])
-def test_truncated_images_are_refused_at_every_length(format_name: str) -> None:
+def test_an_image_cut_at_any_length_is_refused_or_read_whole(format_name: str) -> None:
     data = saved(Image.fromarray(noise((12, 12, 3))), format_name).getvalue()
     whole = read_picture(io.BytesIO(data)).array
-    for length in range(0, len(data) - 1, max(1, len(data) // 60)):
+    for length in range(len(data)):
         try:
             picture = read_picture(io.BytesIO(data[:length]))
         except vmesh.ImageError:

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 import vmesh
+from tests.pictures import share_apart
 from vmesh.formats.raster.rendering import write_raster
 from vmesh.metrics import psnr
 
@@ -42,10 +43,10 @@ def test_the_size_is_what_was_asked_for(
     assert vmesh.render(mesh, **options).shape == shape  # type: ignore[arg-type]
 
 
-def test_every_size_shows_the_same_picture(mesh: vmesh.Mesh) -> None:
+def test_supersampling_gives_the_means_of_a_larger_picture(mesh: vmesh.Mesh) -> None:
     large = vmesh.render(mesh, scale=4)
     reduced = large.reshape(400, 4, 600, 4, 3).mean(axis=(1, 3))
-    assert psnr(vmesh.render(mesh, supersample=4), reduced) > 55.0
+    assert np.abs(vmesh.render(mesh, supersample=4) - reduced).max() <= 0.5
 
 
 def test_a_ramp_is_exact() -> None:
@@ -66,8 +67,8 @@ def test_a_rotation_is_transparent_outside_of_the_picture(mesh: vmesh.Mesh) -> N
 def test_a_reflection_mirrors_the_pixels(mesh: vmesh.Mesh) -> None:
     mirrored = vmesh.render(mesh, transform=(-1, 0, 0, 1, 0, 0))
     assert mirrored.shape == (400, 600, 3)
-    # Only centres that lie on an edge may choose the other side.
-    assert psnr(mirrored[:, ::-1], vmesh.render(mesh)) > 35.0
+    # Centres that lie on an edge may choose the other side.
+    assert share_apart(mirrored[:, ::-1], vmesh.render(mesh)) < 0.01
 
 
 def test_a_quarter_turn_swaps_the_sides(mesh: vmesh.Mesh) -> None:
@@ -79,8 +80,8 @@ def test_a_transformed_mesh_and_a_transforming_render_agree(mesh: vmesh.Mesh) ->
     moved = vmesh.render(mesh.transform(matrix))
     drawn = vmesh.render(mesh, transform=matrix)
     assert moved.shape == drawn.shape
-    both = (moved[:, :, 3] == 255) & (drawn[:, :, 3] == 255)
-    assert psnr(moved[both], drawn[both]) > 40.0
+    # Vertices are rounded to the finest lattice of the mesh, or of the raster.
+    assert share_apart(moved, drawn) < 0.01
 
 
 def test_supersampling_weighs_colors_by_their_alpha() -> None:
@@ -134,7 +135,15 @@ def test_image_files_open_with_pillow_and_keep_their_profile(
     with Image.open(path) as image:
         assert image.size == (300, 200)
         assert image.info["icc_profile"] == profile
-        assert psnr(np.asarray(image.convert("RGB")), vmesh.render(mesh, scale=0.5)) > 30.0
+        shown = np.asarray(image.convert("RGB"))
+    rendered = vmesh.render(mesh, scale=0.5)
+    if suffix in ("png", "tif"):
+        assert np.array_equal(shown, rendered)
+        return
+    # What loses something loses less than by Pillow's own choice.
+    coarser = io.BytesIO()
+    Image.fromarray(rendered).save(coarser, {"jpg": "JPEG", "webp": "WEBP"}[suffix])
+    assert psnr(shown, rendered) > psnr(np.asarray(Image.open(coarser)), rendered)
 
 
 def test_jpeg_lays_transparent_pictures_on_white() -> None:

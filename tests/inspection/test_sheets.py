@@ -7,6 +7,7 @@ from itertools import combinations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pikepdf
 import pytest
 from lxml import etree
@@ -14,7 +15,7 @@ from PIL import Image
 
 import vmesh
 from tests.formats.renderers import PDF_RENDERERS, SVG_RENDERERS
-from tests.pictures import PICTURES, psnr
+from tests.pictures import PICTURES, psnr, share_apart
 from vmesh.arrays import UInt8Array
 from vmesh.encoder.settings import Settings
 from vmesh.errors import LimitError
@@ -73,25 +74,36 @@ def blurred(pixels: UInt8Array) -> UInt8Array:
     return means
 
 
+def error_of(drawn: UInt8Array, shown: npt.ArrayLike) -> float:
+    """Mean squared error of a drawing, in squared levels."""
+    return float(np.square(np.subtract(drawn, shown, dtype=np.float64)).mean())
+
+
 def check_drawing(sheet: Sheet, drawn: UInt8Array, renderer: str) -> None:
     """Hold a drawing of a sheet against its raster, panel by panel."""
     ours = draw_sheet(sheet)
     assert drawn.shape == ours.shape
+    overdrawn = [place_of(item) for item in sheet.items if isinstance(item, Strokes)]
     n_exact = 0
     for item in sheet.items:
         if isinstance(item, Frame | Label):
+            continue
+        if isinstance(item, Pixels) and place_of(item) in overdrawn:
             continue
         first, second = drawn[place_of(item)][2:-2, 2:-2], ours[place_of(item)][2:-2, 2:-2]
         if isinstance(item, Strokes):
             darker = np.abs(blurred(first).astype(int) - blurred(second)).mean()
             assert darker < (35 if renderer in DARK_STROKES else 12)
-        elif isinstance(item, MeshPart):
-            assert psnr(first, second) > 32
         else:
-            assert psnr(first, second) > 20
-            n_exact += np.array_equal(first, second)
-    assert n_exact >= 4 or renderer == "poppler"  # which draws pictures a pixel wider
-    assert psnr(drawn, ours) > 18
+            # Far closer to ours than a panel that is all in the mean colour of ours.
+            plain = np.broadcast_to(second.mean(axis=(0, 1)), second.shape)
+            is_wider = renderer == "poppler" and isinstance(item, Pixels)  # by a pixel
+            share = 1 / 2 if is_wider else 1 / 10
+            assert error_of(first, second) < share * error_of(second, plain)
+            n_exact += isinstance(item, Pixels) and np.array_equal(first, second)
+    assert n_exact >= 4 or renderer == "poppler"
+    # Letters are smoothed in as many ways as there are programs.
+    assert error_of(drawn, ours) < error_of(np.full_like(ours, 255), ours) / 10
 
 
 @pytest.mark.parametrize("name", ["stages", "zoom"])
@@ -124,7 +136,10 @@ def test_all_kinds_of_pictures_have_sheets(
     pdf = PDF_RENDERERS["mupdf"](written(sheet, tmp_path / "sheet.pdf"), 1)
     for drawn in (svg, pdf):
         assert drawn.shape == ours.shape
-        assert psnr(drawn, ours) > 20
+        pixels = [place_of(item) for item in sheet.items if isinstance(item, Pixels)]
+        n_same = sum(share_apart(drawn[place], ours[place]) == 0 for place in pixels)
+        assert n_same >= 4  # Letters or the mesh lie over the others.
+        assert error_of(drawn, ours) < error_of(np.full_like(ours, 255), ours) / 3
 
 
 def test_letters_keep_clear_of_each_other_and_of_the_rim(found: Inspection) -> None:
@@ -182,8 +197,12 @@ def test_a_zoom_sets_the_mesh_beside_enlarged_pixels(found: Inspection) -> None:
     original = found.original[40:80, 60:110]
     _, squares, bicubic, *_ = (item.array for item in sheet.items if isinstance(item, Pixels))
     assert np.array_equal(squares, original.repeat(4, axis=0).repeat(4, axis=1))
-    inner = bicubic.reshape(40, 4, 50, 4, 3).mean(axis=(1, 3))
-    assert psnr(inner.astype(np.uint8), original) > 30
+    bilinear = np.asarray(Image.fromarray(original).resize((200, 160), Image.Resampling.BILINEAR))
+    reduced = [
+        enlarged.reshape(40, 4, 50, 4, 3).mean(axis=(1, 3)).round().astype(np.uint8)
+        for enlarged in (bicubic, bilinear)
+    ]
+    assert error_of(reduced[0], original) < error_of(reduced[1], original)
     (part,) = (item for item in sheet.items if isinstance(item, MeshPart))
     whole = flatten(vmesh.render(found.mesh, scale=4))
     assert np.array_equal(part.pixels, whole[160:320, 240:440])
@@ -221,14 +240,16 @@ def test_points_have_the_colours_of_the_planes_that_they_were_sampled_from(
     found: Inspection,
 ) -> None:
     items = view_sheet(found, "points").items
-    colors = {item.color for item in items if isinstance(item, Strokes)}
-    assert {(220, 0, 0), (0, 220, 0), (0, 0, 220)} <= colors
+    colors = np.array([item.color for item in items if isinstance(item, Strokes)])
+    # Red, green and blue, each alone.
+    alone = colors[np.count_nonzero(colors, axis=1) == 1]
+    assert sorted(np.argmax(alone, axis=1).tolist()) == [0, 1, 2]
     n_points = sum(len(item.ends) for item in items if isinstance(item, Strokes))
     assert n_points == found.mesh.n_vertices
     adaptive = inspect_encoding(found.photograph, Settings(effort=2, vertices=100))
-    assert {
-        item.color for item in view_sheet(adaptive, "points").items if isinstance(item, Strokes)
-    } == {(32, 32, 32)}
+    (strokes,) = view_sheet(adaptive, "points").items
+    assert isinstance(strokes, Strokes)
+    assert len(set(strokes.color)) == 1  # one ink for all, a grey
 
 
 def test_vector_sheets_hold_the_mesh_as_paths_and_the_words_as_text(

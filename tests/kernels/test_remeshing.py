@@ -16,6 +16,11 @@ from tests.surfaces import check_surface, measure_all, open_surface, scattered, 
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.remeshing import (
+    LEAST_GAIN,
+    MAX_STEPS,
+    N_TRIES,
+    REACH,
+    RIDGE,
     Surface,
     Workspace,
     flip_edges,
@@ -27,10 +32,6 @@ from vmesh.kernels.remeshing import (
     weigh,
 )
 from vmesh.mesh import Mesh
-
-RIDGE = 1e-2  # as the kernels hold a vertex that no pixel tells of
-# Pixels that a vertex steps at once, how many steps it tries, and how many it takes.
-REACH, N_TRIES, MAX_STEPS = 3, 3, 8
 
 
 def room_for(image: UInt8Array) -> Workspace:
@@ -340,7 +341,7 @@ def walk(surface: Surface, image: UInt8Array, v: int) -> tuple[float, list[tuple
         changes = twins.predicted_changes(points, faces, colors, image, v, steps)
         places = [(place[0] + x, place[1] + y) for x, y in sorted(steps, key=changes.__getitem__)]
         tried = [p for p in places if is_allowed(p)][:N_TRIES]
-        better = [p for p in tried if error_at(p) < least - 1e-3]
+        better = [p for p in tried if error_at(p) < least - LEAST_GAIN]
         if not better:
             break
         place, least = better[0], error_at(better[0])

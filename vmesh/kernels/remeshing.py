@@ -45,11 +45,16 @@ from vmesh.kernels.predicates import in_circle_float, orient
 MAX_RING = 48
 """A vertex with more neighbours than this is left as it is."""
 
-# A vertex steps at most this many pixels in each direction, to one of the places with the largest
-# predicted decrease of the error, and then on from there.
-_REACH = 3
-_N_TRIES = 3
-_MAX_STEPS = 8
+REACH = 3
+"""A vertex steps at most this many pixels in each direction."""
+N_TRIES = 3
+"""Places that a vertex tries at each step: those with the largest predicted decrease."""
+MAX_STEPS = 8
+"""A vertex steps on from a better place at most this many times."""
+RIDGE = 1e-2
+"""Holds the colour of a vertex whose triangles cover next to no pixel's centre, in pixels."""
+LEAST_GAIN = 1e-3
+"""An edit has to gain at least this much squared error."""
 
 # Columns of a row are found in floating point. They are fractions with denominators of at most
 # 2**18, so this bias decides on which side of an edge a pixel's centre lies without error.
@@ -57,10 +62,6 @@ _BIAS = 1e-7
 # A literal would be a type of its own, for which a kernel is compiled once more.
 _N_SIDES: Any = np.int64(3)
 _ROOT: Any = np.int64(0)
-# Holds a vertex whose triangles cover next to no pixel's centre, in pixels.
-_RIDGE = 1e-2
-# An edit has to gain at least this much squared error.
-_LEAST_GAIN = 1e-3
 
 
 class Surface(NamedTuple):
@@ -116,7 +117,7 @@ def make_workspace(height: int, n_components: int) -> Workspace:
         rows=np.zeros((height, 2), np.int64),
         sums=np.zeros(2 + n_components),
         side_sums=np.zeros((MAX_RING, 2 + n_components)),
-        predictions=np.zeros((2 * _REACH + 1, 2 * _REACH + 1)),
+        predictions=np.zeros((2 * REACH + 1, 2 * REACH + 1)),
     )
 
 
@@ -268,7 +269,7 @@ def error_at(
         # The least error of some triangles is no more than that of all.
         error = sums[0]
         for z in range(image.shape[2]):
-            error -= sums[2 + z] * sums[2 + z] / (sums[1] + _RIDGE)
+            error -= sums[2 + z] * sums[2 + z] / (sums[1] + RIDGE)
         if error > limit:
             return np.inf
     return error
@@ -277,9 +278,9 @@ def error_at(
 @inner_kernel
 def take_color(surface: Surface, work: Workspace, v: int) -> None:
     """Give vertex v the best colour by ``work.sums``, if its triangles hold any pixel."""
-    if work.sums[1] > _RIDGE:
+    if work.sums[1] > RIDGE:
         for z in range(surface.colors.shape[1]):
-            surface.colors[v, z] = work.sums[2 + z] / (work.sums[1] + _RIDGE)
+            surface.colors[v, z] = work.sums[2 + z] / (work.sums[1] + RIDGE)
 
 
 @kernel
@@ -696,22 +697,22 @@ def predict_step(
             h_yy += weights * down * down
             mean_x += weights * right
             mean_y += weights * down
-        share = 1.0 / (side_sums[n_sides - 1, 1] + _RIDGE)
+        share = 1.0 / (side_sums[n_sides - 1, 1] + RIDGE)
         h_xx -= mean_x * mean_x * share
         h_xy -= mean_x * mean_y * share
         h_yy -= mean_y * mean_y * share
     width, height = 2 * image.shape[1], 2 * image.shape[0]
     x, y = points[v, 0], points[v, 1]
     for i in range(work.predictions.shape[0]):
-        dy = 2 * (i - _REACH)
+        dy = 2 * (i - REACH)
         for k in range(work.predictions.shape[1]):
-            dx = 2 * (k - _REACH)
+            dx = 2 * (k - REACH)
             work.predictions[i, k] = np.inf
             if may_step(x, dx, width) and may_step(y, dy, height):
                 change = 2.0 * (b_x * dx + b_y * dy)
                 change += h_xx * dx * dx + 2.0 * h_xy * dx * dy + h_yy * dy * dy
                 work.predictions[i, k] = change
-    work.predictions[_REACH, _REACH] = np.inf
+    work.predictions[REACH, REACH] = np.inf
 
 
 @inner_kernel
@@ -725,7 +726,7 @@ def step(
     """
     points, predictions = surface.points, work.predictions
     predict_step(surface, image, work, v, n_sides)
-    for _ in range(_N_TRIES):
+    for _ in range(N_TRIES):
         i, k = 0, 0
         for row in range(predictions.shape[0]):
             for column in range(predictions.shape[1]):
@@ -734,8 +735,8 @@ def step(
         if predictions[i, k] == np.inf:
             break
         predictions[i, k] = np.inf
-        x, y = points[v, 0] + 2 * (k - _REACH), points[v, 1] + 2 * (i - _REACH)
-        error = error_at(surface, image, work, x, y, n_sides, least - _LEAST_GAIN)
+        x, y = points[v, 0] + 2 * (k - REACH), points[v, 1] + 2 * (i - REACH)
+        error = error_at(surface, image, work, x, y, n_sides, least - LEAST_GAIN)
         if error < np.inf:
             points[v, 0], points[v, 1] = x, y
             take_color(surface, work, v)
@@ -767,7 +768,7 @@ def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int
             continue
         least = error_at(surface, image, work, x, y, n_sides, np.inf)
         take_color(surface, work, v)
-        for _ in range(_MAX_STEPS):
+        for _ in range(MAX_STEPS):
             error = step(surface, image, work, v, n_sides, least)
             if error == least:
                 break
@@ -803,10 +804,10 @@ def flip_edges(surface: Surface, image: UInt8Array, work: Workspace, charge: flo
         first = triangle_error(surface, image, work, a, d, c)
         gain = errors[e // 3] + errors[f // 3] - first
         gain += -charge if not in_circle_float(points, b, c, a, d) else charge
-        if gain <= _LEAST_GAIN:
+        if gain <= LEAST_GAIN:
             continue
         gain -= triangle_error(surface, image, work, d, a, b)
-        if gain <= _LEAST_GAIN:
+        if gain <= LEAST_GAIN:
             continue
         far_ca, far_ab = twin[next_edge(e)], twin[previous_edge(e)]
         far_bd, far_dc = twin[next_edge(f)], twin[previous_edge(f)]
