@@ -25,6 +25,15 @@ def test_as_many_points_are_found_as_were_asked_for(
     assert len(samples.vertices()) == samples.n_points
 
 
+@pytest.mark.parametrize("n_points", [20, 31, 61, 92, 123])
+def test_a_small_picture_never_gets_many_times_the_points(
+    coffee: UInt8Array, n_points: int
+) -> None:
+    salience = salience_of(coffee[100:196, 200:264])
+    samples = sample(salience, n_points=n_points, sampler="channels")
+    assert samples.n_points == pytest.approx(n_points, rel=0.1)
+
+
 def test_more_points_than_the_salience_holds_are_found_all_the_same() -> None:
     salience = np.zeros((1, 60, 60), dtype=np.uint16)
     salience[0, 30, 30] = ONE

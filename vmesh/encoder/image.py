@@ -59,7 +59,8 @@ def with_hidden_colors_replaced(image: SampleArray) -> SampleArray:
 
 def premultiplied_planes(image: SampleArray) -> SampleArray:
     """Planes of a picture, shape (c, h, w), with colours that are premultiplied by alpha."""
-    planes = np.ascontiguousarray(image.transpose(2, 0, 1))
+    # A copy in any case: the picture is the caller's, and a single pixel is contiguous either way.
+    planes = np.array(image.transpose(2, 0, 1), order="C")
     if len(planes) == 4:
         peak = peak_of(image)
         alpha = planes[3].astype(np.uint32)

@@ -127,7 +127,9 @@ def sample(
     guess = _expected_scale(salience, n_points)
     samples = _search(lambda scale: attempt(scale, 0), n_points, guess, _MAX_SCALE)
     if samples.n_points < (1 - COUNT_TOLERANCE) * n_points:
-        return _search(lambda floor: attempt(_MAX_SCALE, floor), n_points, ONE // 16, ONE)
+        raised = _search(lambda floor: attempt(_MAX_SCALE, floor), n_points, ONE // 16, ONE)
+        # Too few may also have come of steps that are too coarse for a small picture.
+        return min(samples, raised, key=lambda found: abs(found.n_points - n_points))
     return samples
 
 
