@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context
+from multiprocessing import active_children, connection, get_context, parent_process
 from threading import Thread, current_thread, main_thread
 from types import FrameType
 from typing import Final
@@ -121,9 +121,18 @@ def _submit(pool: ProcessPoolExecutor, task: Task) -> Future[Outcome]:
 
 
 def _prepare_process() -> None:
-    """Leave interrupts to the process that started this one, and end when it says so."""
+    """Leave interrupts to the process that started this one, and end when it says so or is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _end)
+    starter = parent_process()
+    assert starter is not None
+    Thread(target=_end_after, args=(starter.sentinel,), daemon=True).start()
+
+
+def _end_after(sentinel: int) -> None:
+    """End when the process of a sentinel has, by whatever signal: it could not say so."""
+    connection.wait([sentinel])
+    _exit_between_files()
 
 
 def _end(_: int, __: FrameType | None) -> None:
