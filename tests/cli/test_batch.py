@@ -112,6 +112,27 @@ def test_a_folder_that_cannot_be_written_is_told_at_once(photos: Path, tmp_path:
     assert "denied" in fail(1, "batch", photos, "-o", out)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals but one")
+@pytest.mark.parametrize("number", ["SIGKILL", "SIGTERM", "SIGHUP"])
+def test_the_processes_of_a_batch_end_with_it(
+    photos: Path, tmp_path: Path, chelsea: UInt8Array, number: str
+) -> None:
+    Image.fromarray(chelsea).save(photos / "long.png")
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "vmesh", "batch", str(photos), "-o", str(out), "--json"]
+    with subprocess.Popen(
+        [*command, "-e", "9", "-q", "95", "-j", "2"], stdout=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        process.send_signal(signal.Signals[number])
+        # It ends when nobody is left who could write to it.
+        process.communicate(timeout=20)
+    left = files_in(out)
+    assert "long.vmesh" not in left
+    assert all(vmesh.load(out / name) for name in left)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no interrupts of process groups")
 def test_an_interrupted_batch_leaves_no_half_files_and_goes_on(
     photos: Path, tmp_path: Path, chelsea: UInt8Array

@@ -6,15 +6,18 @@ import os
 import signal
 import sys
 from collections import deque
-from collections.abc import Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context
-from threading import Thread
+from multiprocessing import active_children, connection, get_context, parent_process
+from threading import Thread, current_thread, main_thread
 from types import FrameType
+from typing import Final
 
 from vmesh.batch.task import WRITING, Outcome, Task, run
+
+_SECONDS_TO_INTERRUPT: Final = 0.2
 
 
 def run_in_processes(tasks: Iterable[Task], n_jobs: int) -> Generator[Outcome, None, None]:
@@ -38,7 +41,7 @@ def _run_until_one_dies(waiting: deque[Task], n_jobs: int) -> Generator[Outcome,
     No more are handed over than are worked on, so that these are few.
     """
     begun: dict[Future[Outcome], Task] = {}
-    with _pool(min(n_jobs, len(waiting))) as pool:
+    with _interrupts_noted() as check, _pool(min(n_jobs, len(waiting))) as pool:
         while waiting or begun:
             try:
                 while waiting and len(begun) < n_jobs:
@@ -46,7 +49,10 @@ def _run_until_one_dies(waiting: deque[Task], n_jobs: int) -> Generator[Outcome,
                     waiting.popleft()
             except BrokenProcessPool:
                 break
-            done = wait(begun, return_when=FIRST_COMPLETED).done
+            done: set[Future[Outcome]] = set()
+            while not done:
+                check()
+                done = wait(begun, _SECONDS_TO_INTERRUPT, FIRST_COMPLETED).done
             whole = [future for future in done if future.exception() is None]
             for future in whole:
                 del begun[future]
@@ -54,6 +60,32 @@ def _run_until_one_dies(waiting: deque[Task], n_jobs: int) -> Generator[Outcome,
             if len(whole) < len(done):
                 break
     return list(begun.values())
+
+
+@contextmanager
+def _interrupts_noted() -> Iterator[Callable[[], None]]:
+    """Check that raises the interrupt that has come in the block, if any.
+
+    Raised wherever the program happens to be, it could leave a lock of the pool half taken, and end
+    as another error. Where interrupts are handled in another way, or by another thread, they stay
+    as they are.
+    """
+    noted: list[int] = []
+
+    def check() -> None:
+        if noted:
+            raise KeyboardInterrupt
+
+    is_ours = current_thread() is main_thread()
+    if not is_ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield check
+        return
+    signal.signal(signal.SIGINT, lambda number, _: noted.append(number))
+    try:
+        yield check
+        check()
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager
@@ -89,9 +121,18 @@ def _submit(pool: ProcessPoolExecutor, task: Task) -> Future[Outcome]:
 
 
 def _prepare_process() -> None:
-    """Leave interrupts to the process that started this one, and end when it says so."""
+    """Leave interrupts to the process that started this one, and end when it says so or is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _end)
+    starter = parent_process()
+    assert starter is not None
+    Thread(target=_end_after, args=(starter.sentinel,), daemon=True).start()
+
+
+def _end_after(sentinel: int) -> None:
+    """End when the process of a sentinel has, by whatever signal: it could not say so."""
+    connection.wait([sentinel])
+    _exit_between_files()
 
 
 def _end(_: int, __: FrameType | None) -> None:
