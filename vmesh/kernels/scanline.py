@@ -283,7 +283,7 @@ def fill(
         first, last = spans(vertices, triangles[t], width, height, rows)
         for z in range(n_components):
             c0, c1, c2 = np.int64(colors[i, z]), np.int64(colors[j, z]), np.int64(colors[k, z])
-            bases[z] = gradient(c0, c1, c2, x0, y0, x1, y1, x2, y2)
+            bases[z, 0], bases[z, 1], bases[z, 2] = gradient(c0, c1, c2, x0, y0, x1, y1, x2, y2)
         if det <= _LARGEST_FLOAT_DET:
             fill_float(bases, rows, first, last, det, raster)
         else:

@@ -77,7 +77,7 @@ def _cover(twins: Int64Array, n_triangles: int) -> Int32Array:
         while side == NO_SIDE and drawn[first]:
             first += 1
         t = first if side == NO_SIDE else side // 3
-        path[i] = t, NO_SIDE if is_start else side
+        path[i, 0], path[i, 1] = t, NO_SIDE if is_start else side
         drawn[t] = True
         pile[height] = t
         height += 1
