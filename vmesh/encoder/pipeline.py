@@ -107,7 +107,7 @@ def encode(
     seed : int
         Start of the random thresholds.
     threads : int, optional
-        Most threads at once, of which the mesh does not depend; as many as there are processors
+        Most threads at once, on which the mesh does not depend; as many as there are processors
         unless given.
     metadata : Metadata, optional
         Metadata that travel with the picture.

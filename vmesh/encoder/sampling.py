@@ -129,7 +129,7 @@ def sample(
     if samples.n_points < (1 - COUNT_TOLERANCE) * n_points:
         raised = _search(lambda floor: attempt(_MAX_SCALE, floor), n_points, ONE // 16, ONE)
         # Too few may also have come of steps that are too coarse for a small picture.
-        return min(samples, raised, key=lambda found: abs(found.n_points - n_points))
+        return min(raised, samples, key=lambda found: abs(found.n_points - n_points))
     return samples
 
 
