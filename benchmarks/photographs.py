@@ -10,7 +10,8 @@ from typing import Final
 import click
 
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import flatten, read_picture
+from vmesh.formats.picture.conversion import flatten
+from vmesh.formats.picture.picture import read_picture
 
 _SUFFIXES: Final = (".png", ".jpg", ".jpeg")
 

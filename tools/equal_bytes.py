@@ -19,7 +19,8 @@ from benchmarks.raster.codecs import JPEG, WEBP
 from benchmarks.raster.search import CodecSearch
 from tools.gallery import encode
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import flatten, read_picture
+from vmesh.formats.picture.conversion import flatten
+from vmesh.formats.picture.picture import read_picture
 from vmesh.metrics import psnr
 
 _ROOT: Final = Path(__file__).parents[1]

@@ -22,7 +22,7 @@ from benchmarks.photographs import load_photographs
 from benchmarks.raster.codecs import JPEG, WEBP
 from benchmarks.raster.search import CodecSearch
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.metrics import psnr
 
 TARGET: Final = Path(__file__).parents[1] / "docs" / "gallery.md"

@@ -22,7 +22,7 @@ from vmesh.color_lattice import rescale
 from vmesh.encoder.settings import Settings
 from vmesh.errors import FormatError, LimitError, VmeshError
 from vmesh.formats.metadata.exif import EXIF_START
-from vmesh.formats.raster.picture import picture_of
+from vmesh.formats.picture.picture import picture_of
 from vmesh.limits import DEFAULT_LIMITS, PLAIN_DEPTH
 from vmesh.mesh import Metadata
 

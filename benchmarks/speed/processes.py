@@ -16,7 +16,7 @@ from PIL import Image
 from benchmarks.measurement import Timing, judge, measure_process, time_actions
 from benchmarks.tables import Printer, Table
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import resize
+from vmesh.formats.picture.conversion import resize
 
 SMALL_SIDE: Final = 128
 TARGET_START: Final = 300.0  # ms

@@ -20,7 +20,7 @@ from benchmarks.speed.drawing import (
 from benchmarks.tables import Printer, Table
 from vmesh.arrays import UInt8Array
 from vmesh.formats.pdf.cairo_patterns import import_cairo
-from vmesh.formats.raster.picture import resize
+from vmesh.formats.picture.conversion import resize
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr
 

@@ -18,7 +18,7 @@ from benchmarks.tables import Printer, Table
 from benchmarks.vector_output.renderers import MISSING, Renderers
 from tests.formats.renderers import Renderer
 from vmesh.encoder.settings import Method
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.mesh import Mesh
 from vmesh.metrics import psnr
 

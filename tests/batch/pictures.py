@@ -7,11 +7,11 @@ from pathlib import Path
 from PIL import Image
 
 from vmesh.arrays import UInt8Array
-from vmesh.batch.task import Task
+from vmesh.batch.task import Recipe, Task
 from vmesh.encoder.settings import Settings
-from vmesh.limits import Limits
 
 SETTINGS = Settings(vertices=60, effort=1, threads=1)
+RECIPE = Recipe(SETTINGS)
 
 
 def write_pictures(folder: Path, photograph: UInt8Array, n_pictures: int) -> list[Path]:
@@ -25,6 +25,4 @@ def write_pictures(folder: Path, photograph: UInt8Array, n_pictures: int) -> lis
 
 def tasks_of(sources: list[Path], suffix: str = ".vmesh") -> list[Task]:
     """Tasks that write beside their sources."""
-    return [
-        Task(str(path), (str(path.with_suffix(suffix)),), SETTINGS, Limits()) for path in sources
-    ]
+    return [Task(str(path), (str(path.with_suffix(suffix)),), RECIPE) for path in sources]

@@ -7,17 +7,16 @@ import pytest
 
 from vmesh.batch.plan import make_plan
 from vmesh.batch.sources import Source
-from vmesh.batch.task import Outcome, Task
+from vmesh.batch.task import Outcome, Recipe, Task
 from vmesh.encoder.settings import Settings
-from vmesh.limits import Limits
 
-SETTINGS = Settings(vertices=100, threads=1)
+RECIPE = Recipe(Settings(vertices=100, threads=1))
 
 
 def plan(
     *sources: Source, output: Path, suffixes: tuple[str, ...] = (".vmesh",), force: bool = False
 ) -> tuple[list[Task], list[Outcome]]:
-    return make_plan(sources, str(output), suffixes, SETTINGS, Limits(), force=force)
+    return make_plan(sources, str(output), suffixes, RECIPE, force=force)
 
 
 def source(folder: Path, name: str, below: str = "") -> Source:
@@ -33,7 +32,7 @@ def test_every_source_has_its_place_and_all_its_formats(tmp_path: Path) -> None:
     tasks, skipped = plan(photograph, output=tmp_path / "out", suffixes=(".vmesh", ".svg"))
     place = tmp_path / "out" / "sea" / "deep"
     targets = (str(place / "a.b.vmesh"), str(place / "a.b.svg"))
-    assert tasks == [Task(str(photograph.path), targets, SETTINGS, Limits())]
+    assert tasks == [Task(str(photograph.path), targets, RECIPE)]
     assert skipped == []
 
 

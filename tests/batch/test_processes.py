@@ -46,7 +46,7 @@ def test_a_process_that_is_killed_loses_nothing(tmp_path: Path, chelsea: UInt8Ar
 
 def test_a_task_that_kills_its_process_fails_alone(tmp_path: Path, chelsea: UInt8Array) -> None:
     tasks = tasks_of(write_pictures(tmp_path, chelsea, 4))
-    tasks[1] = DeadlyTask(tasks[1].source, tasks[1].targets, tasks[1].settings, tasks[1].limits)
+    tasks[1] = DeadlyTask(tasks[1].source, tasks[1].targets, tasks[1].recipe)
     outcomes = {outcome.source: outcome for outcome in run_in_processes(tasks, 2)}
     assert outcomes.keys() == {task.source for task in tasks}
     failed = outcomes.pop(tasks[1].source)

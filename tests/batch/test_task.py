@@ -74,8 +74,9 @@ def test_what_goes_wrong_is_told_and_harms_no_earlier_output(task: Task, tmp_pat
         assert outcome.status == "failed"
         assert outcome.outputs == ()
         assert error in str(outcome.error)
-    assert "limit" in str(run(replace(task, limits=Limits(max_pixels=10))).error)
-    assert "limit" in str(run(replace(task, limits=Limits(max_vertices=10))).error)
+    for limits in (Limits(max_pixels=10), Limits(max_vertices=10)):
+        recipe = replace(task.recipe, limits=limits)
+        assert "limit" in str(run(replace(task, recipe=recipe)).error)
     assert target.read_bytes() == b"an earlier file"
 
 

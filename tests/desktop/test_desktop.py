@@ -17,7 +17,7 @@ from PIL import Image
 import vmesh
 from tests.programs import need_program, place_vmesh
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.metrics import psnr
 
 DESKTOP = Path(__file__).parents[2] / "tools" / "desktop"

@@ -32,7 +32,7 @@ from vmesh.encoder.colors import sample_colors
 from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
 from vmesh.encoder.settings import MAX_EFFORT, Method, Sampler, Settings
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.limits import MAX_SIDE
 from vmesh.mesh import Mesh, Metadata
 

@@ -10,7 +10,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 import vmesh
 from vmesh.arrays import BoolArray, UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.mesh import Mesh
 
 _REACH = 2  # pixels from an edge that count as on it

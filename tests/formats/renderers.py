@@ -15,7 +15,7 @@ from lxml import etree
 from PIL import Image
 
 from tests.programs import need_program
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 
 Pixels = npt.NDArray[np.uint8]
 Renderer = Callable[[Path, int], Pixels]

@@ -16,7 +16,7 @@ from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, sett
 from tests.pictures import PICTURES, share_apart
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html.document import element_script, page_of
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 
 BAR = 40  # rows below the stage
 CONFORMING = Path(__file__).parents[2] / "spec" / "conformance" / "valid"

@@ -12,7 +12,8 @@ from PIL import Image
 
 import vmesh
 from vmesh.formats.pdf.page_size import make_page
-from vmesh.formats.raster.picture import flatten, read_picture
+from vmesh.formats.picture.conversion import flatten
+from vmesh.formats.picture.picture import read_picture
 
 
 def saved(image: Image.Image, format_name: str = "PNG", **options: object) -> io.BytesIO:

@@ -16,7 +16,7 @@ from PIL import Image
 import vmesh
 from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS, SVG_RENDERERS
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.style import Mode, Style
 from vmesh.kernels.scanline import label

@@ -19,7 +19,7 @@ from tests.pictures import PICTURES, psnr, share_apart
 from vmesh.arrays import UInt8Array
 from vmesh.encoder.settings import Settings
 from vmesh.errors import LimitError
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.inspection.heat import heat_colors
 from vmesh.inspection.region import Region
 from vmesh.inspection.sheet.files import write_sheet

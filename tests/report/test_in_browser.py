@@ -13,7 +13,7 @@ from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, sett
 from tests.pictures import PICTURES, psnr
 from tests.report.studies import study_of
 from vmesh.arrays import UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.report.page import page_of, section_of
 from vmesh.report.study import Study
 

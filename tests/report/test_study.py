@@ -13,7 +13,7 @@ import vmesh
 from tests.pictures import PICTURES, grey_ramp
 from tests.report.studies import study_of
 from vmesh.arrays import SampleArray, UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.metrics import compare, psnr
 from vmesh.report.rivals import RIVALS, Point
 from vmesh.report.study import Study

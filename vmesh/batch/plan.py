@@ -6,18 +6,15 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vmesh.batch.sources import Source
-from vmesh.batch.task import Outcome, Task
+from vmesh.batch.task import Outcome, Recipe, Task
 from vmesh.codec.layout import FILE_SUFFIX
-from vmesh.encoder.settings import Settings
-from vmesh.limits import Limits
 
 
 def make_plan(
     sources: Iterable[Source],
     output: str,
     suffixes: tuple[str, ...],
-    settings: Settings,
-    limits: Limits,
+    recipe: Recipe,
     *,
     force: bool,
 ) -> tuple[list[Task], list[Outcome]]:
@@ -42,7 +39,7 @@ def make_plan(
         missing = tuple(str(target) for target in targets if target not in current)
         made = next((str(target) for target in current if target.suffix == FILE_SUFFIX), None)
         if missing:
-            tasks.append(Task(str(path), missing, settings, limits, made))
+            tasks.append(Task(str(path), missing, recipe, made))
         else:
             skipped.append(Outcome(str(path), "skipped"))
     return tasks, skipped

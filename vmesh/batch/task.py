@@ -13,11 +13,35 @@ from vmesh.codec.layout import FILE_SUFFIX, is_vmesh
 from vmesh.encoder.settings import Settings
 from vmesh.errors import ImageError, describe
 from vmesh.files import atomic_output
-from vmesh.limits import Limits
+from vmesh.formats.metadata.privacy import Strip
+from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
+from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
 
 WRITING: Final = threading.Lock()
 """Held while a file is written: no time to end the process."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """Recipe of a batch: how every source is worked on.
+
+    Parameters
+    ----------
+    settings : Settings
+        Of the encoder.
+    reading : PictureOptions
+        How photographs are read.
+    strip : {"none", "private", "all"}, optional
+        Metadata that are left out; unless given, what suits each format.
+    limits : Limits
+        On the sources and on their meshes.
+    """
+
+    settings: Settings
+    reading: PictureOptions = DEFAULT_OPTIONS
+    strip: Strip | None = None
+    limits: Limits = DEFAULT_LIMITS
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,18 +54,14 @@ class Task:
         Path of a photograph or of a ``.vmesh`` file.
     targets : tuple of str
         Paths to be written, each in the format that its ending names.
-    settings : Settings
-        Of the encoder.
-    limits : Limits
-        On the source and on its mesh.
+    recipe : Recipe
     mesh : str, optional
         Path of the mesh of the source, where there is one already.
     """
 
     source: str
     targets: tuple[str, ...]
-    settings: Settings
-    limits: Limits
+    recipe: Recipe
     mesh: str | None = None
 
 
@@ -81,7 +101,7 @@ def run(task: Task) -> Outcome:
     try:
         mesh = _mesh_of(task)
         for target in task.targets:
-            _write(mesh, target, task.limits)
+            _write(mesh, target, task.recipe)
             written.append(target)
     except Exception as problem:
         # Whatever it is, the other files of the batch have nothing to do with it.
@@ -99,13 +119,13 @@ def run(task: Task) -> Outcome:
 def _mesh_of(task: Task) -> Mesh:
     """The mesh of the source: encoded, or read where there is one."""
     if task.mesh is not None:
-        return _load(Path(task.mesh).read_bytes(), task.limits)
+        return _load(Path(task.mesh).read_bytes(), task.recipe.limits)
     data = Path(task.source).read_bytes()
     if not is_vmesh(data) and Path(task.source).suffix.lower() != FILE_SUFFIX:
-        return _encode(data, task.settings, task.limits)
+        return _encode(data, task.recipe)
     if any(Path(target).suffix == FILE_SUFFIX for target in task.targets):
         raise ImageError("this is a .vmesh file, a photograph is needed")
-    return _load(data, task.limits)
+    return _load(data, task.recipe.limits)
 
 
 def _load(data: bytes, limits: Limits) -> Mesh:
@@ -114,19 +134,21 @@ def _load(data: bytes, limits: Limits) -> Mesh:
     return loads(data, limits=limits)
 
 
-def _encode(data: bytes, settings: Settings, limits: Limits) -> Mesh:
+def _encode(data: bytes, recipe: Recipe) -> Mesh:
     from vmesh.encoder.pipeline import encode_with
-    from vmesh.formats.raster.picture import read_picture
+    from vmesh.formats.metadata.privacy import stripped
+    from vmesh.formats.picture.picture import read_picture
 
     if not data:
         raise ImageError("the file is empty")
-    picture = read_picture(io.BytesIO(data), limits=limits)
-    mesh = encode_with(picture.array, settings, metadata=picture.metadata)
-    limits.check_vertices(mesh.n_vertices)
+    picture = read_picture(io.BytesIO(data), options=recipe.reading, limits=recipe.limits)
+    metadata = stripped(picture.metadata, recipe.strip or "none")
+    mesh = encode_with(picture.array, recipe.settings, metadata=metadata)
+    recipe.limits.check_vertices(mesh.n_vertices)
     return mesh
 
 
-def _write(mesh: Mesh, target: str, limits: Limits) -> None:
+def _write(mesh: Mesh, target: str, recipe: Recipe) -> None:
     """Write a mesh in the format that the ending of a path names, with its folders."""
     from vmesh.codec.stream import dump
     from vmesh.formats.registry import format_of, write_mesh
@@ -135,7 +157,7 @@ def _write(mesh: Mesh, target: str, limits: Limits) -> None:
     if path.suffix == FILE_SUFFIX:
         dump(mesh, content)
     else:
-        write_mesh(mesh, content, format_of(path), limits=limits)
+        write_mesh(mesh, content, format_of(path), limits=recipe.limits, strip=recipe.strip)
     path.parent.mkdir(parents=True, exist_ok=True)
     with WRITING, atomic_output(path) as stream:
         stream.write(content.getbuffer())

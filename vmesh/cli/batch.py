@@ -16,13 +16,21 @@ from vmesh.batch.cluster import run_on_cluster
 from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
 from vmesh.batch.sources import find_sources
-from vmesh.batch.task import Outcome
+from vmesh.batch.task import Outcome, Recipe
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import mesh_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    mesh_options,
+    picture_options,
+    quiet_option,
+    strip_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.progress import show_files
 from vmesh.cli.streams import STANDARD, check_folder
 from vmesh.codec.layout import FILE_SUFFIX
+from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS
 from vmesh.progress import Progress
 
@@ -77,6 +85,8 @@ class SuffixesType(click.ParamType[tuple[str, ...]]):
     help="Work on the Dask cluster of this scheduler instead, which sees the same files.",
 )
 @click.option("--force", is_flag=True, help="Make outputs also if they are as new as their source.")
+@picture_options
+@strip_option("private for SVG, PDF and HTML, else none")
 @mesh_options
 @limit_options
 @click.option("--json", "as_json", is_flag=True, help="Print a line of JSON for each source.")
@@ -88,6 +98,7 @@ def command(
     jobs: int | None,
     scheduler: str | None,
     force: bool,
+    strip: Strip | None,
     as_json: bool,
     quiet: bool,
     **options: Any,
@@ -102,7 +113,9 @@ def command(
     other sources are done all the same, and the status is 1.
     """
     options["threads"] = 1
-    settings, limits = take_settings(options), take_limits(options)
+    recipe = Recipe(
+        take_settings(options), take_picture_options(options), strip, take_limits(options)
+    )
     if STANDARD in sources:
         raise click.UsageError("batch reads files, not standard input")
     if scheduler is not None:
@@ -111,7 +124,7 @@ def command(
         # The workers run in other folders.
         sources, output = tuple(map(absolute, sources)), absolute(output)
     found = find_sources(sources, output)
-    tasks, skipped = make_plan(found, output, suffixes, settings, limits, force=force)
+    tasks, skipped = make_plan(found, output, suffixes, recipe, force=force)
     make_folder(output)
     if scheduler is None:
         outcomes = run_in_processes(tasks, jobs or os.cpu_count() or 1)

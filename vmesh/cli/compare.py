@@ -8,17 +8,23 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import json_option
+from vmesh.cli.options import (
+    json_option,
+    picture_options,
+    take_picture_options,
+)
 from vmesh.cli.streams import read_mesh_or_photograph
 
 if TYPE_CHECKING:
     from vmesh.arrays import UInt8Array
+    from vmesh.formats.picture.options import PictureOptions
     from vmesh.limits import Limits
 
 
 @click.command("compare")
 @click.argument("first", metavar="A")
 @click.argument("second", metavar="B")
+@picture_options
 @limit_options
 @json_option
 def command(first: str, second: str, as_json: bool, **options: Any) -> None:
@@ -27,11 +33,11 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
     B is brought to the size of A: a mesh by drawing it at that size, a picture by bicubic
     resampling. What is transparent counts as white.
     """
-    limits = take_limits(options)
+    reading, limits = take_picture_options(options), take_limits(options)
     from vmesh.metrics import compare
 
-    reference = _pixels(first, limits, None)
-    other = _pixels(second, limits, (reference.shape[1], reference.shape[0]))
+    reference = _pixels(first, reading, limits, None)
+    other = _pixels(second, reading, limits, (reference.shape[1], reference.shape[0]))
     figures = compare(reference, other)
     if as_json:
         # JSON has no infinity: equal pictures have no PSNR.
@@ -43,13 +49,15 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
         click.echo(f"SSIM      {figures['ssim']:.5f}")
 
 
-def _pixels(path: str, limits: Limits, size: tuple[int, int] | None) -> UInt8Array:
+def _pixels(
+    path: str, reading: PictureOptions, limits: Limits, size: tuple[int, int] | None
+) -> UInt8Array:
     """Pixels of a picture or mesh, shape (h, w, 3), at a size or at its own."""
-    from vmesh.formats.raster.picture import flatten, resize
+    from vmesh.formats.picture.conversion import flatten, resize
     from vmesh.formats.raster.rendering import render
     from vmesh.mesh import Mesh
 
-    given = read_mesh_or_photograph(path, limits)
+    given = read_mesh_or_photograph(path, reading, limits)
     if isinstance(given, Mesh):
         width, height = size or (given.width, given.height)
         return flatten(render(given, limits=limits, width=width, height=height), given.depth)

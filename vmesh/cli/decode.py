@@ -7,9 +7,10 @@ from typing import Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import quiet_option
+from vmesh.cli.options import quiet_option, strip_option
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
+from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, ExportOptions, format_of, write_mesh
 from vmesh.limits import MAX_SIDE
 
@@ -59,6 +60,7 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
     help="Draw what there is of a file that was cut off, if at least its positions are there, or "
     "of one in tiles, if one of them is whole.",
 )
+@strip_option("none")
 @limit_options
 @quiet_option
 def command(
@@ -71,6 +73,7 @@ def command(
     transform: tuple[float, ...] | None,
     supersample: int,
     allow_partial: bool,
+    strip: Strip | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -99,6 +102,7 @@ def command(
             "height": height,
             "transform": transform,
             "supersample": supersample,
+            "strip": strip,
         }
         write_output(
             target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **chosen)

@@ -7,7 +7,13 @@ from typing import Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    encoder_options,
+    picture_options,
+    quiet_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.streams import STANDARD, check_suffix
 from vmesh.cli.vector import convert
 from vmesh.formats.registry import MESH_SUFFIXES, ExportOptions, format_of
@@ -17,6 +23,7 @@ from vmesh.formats.registry import MESH_SUFFIXES, ExportOptions, format_of
 @click.argument("source", metavar="INPUT")
 @click.argument("target", metavar="OUTPUT")
 @click.option("--ascii", is_flag=True, help="PLY as text instead of binary.")
+@picture_options
 @encoder_options
 @limit_options
 @quiet_option
@@ -28,10 +35,11 @@ def command(source: str, target: str, ascii: bool, quiet: bool, **options: Any) 
     text, to the last level. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     if target == STANDARD:
         raise click.UsageError("expected a name for OUTPUT: its ending says the format")
     check_suffix(target, MESH_SUFFIXES)
     chosen: ExportOptions = {"ascii": True} if ascii else {}
     if ascii and not target.lower().endswith(".ply"):
         raise click.UsageError("--ascii is for PLY")
-    convert(source, target, format_of(target), settings, limits, quiet=quiet, **chosen)
+    convert(source, target, format_of(target), settings, reading, limits, quiet=quiet, **chosen)

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    checked_by,
+    encoder_options,
+    picture_options,
+    quiet_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
 from vmesh.inspection.sheet import SHEET_SUFFIXES
@@ -47,6 +54,7 @@ def _region_of(text: str) -> Region:
     type=click.FloatRange(0, min_open=True),
     help="Pixels of a drawing for each of the picture; unless given, what suits a screen.",
 )
+@picture_options
 @encoder_options
 @limit_options
 @quiet_option
@@ -65,6 +73,7 @@ def command(
     """
     region = None if zoom is None else _region_of(zoom)
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     check_suffix(target, SHEET_SUFFIXES)
     suffix = ".png" if target == STANDARD else Path(target).suffix.lower()
     from vmesh.encoder.pipeline import count_steps
@@ -74,7 +83,7 @@ def command(
 
     with show_progress("inspecting", count_steps(settings) + 2, quiet=quiet) as report:
         report("reading")
-        picture = read_photograph(source, limits)
+        picture = read_photograph(source, reading, limits)
         if region is not None:
             region.check_within(picture.array.shape[1], picture.array.shape[0])
         found = inspect_encoding(

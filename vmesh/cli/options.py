@@ -22,6 +22,8 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
+from vmesh.formats.metadata.privacy import Strip
+from vmesh.formats.picture.options import PictureOptions
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 Callback = Callable[[click.Context, click.Parameter, str | None], str | None]
@@ -117,6 +119,26 @@ _THREADS_OPTION = click.option(
 )
 
 
+_PICTURE_OPTIONS = (
+    click.option(
+        "--page",
+        type=click.IntRange(1),
+        help="Page, or frame, of a file with several; unless given, the largest page or the first "
+        "frame.",
+    ),
+    click.option(
+        "--allow-truncated",
+        is_flag=True,
+        help="Read what there is of a photograph that was cut off.",
+    ),
+    click.option(
+        "--to-srgb",
+        is_flag=True,
+        help="Convert the photograph's colours to sRGB, and leave its profile out.",
+    ),
+)
+
+
 def encoder_options(command: Command) -> Command:
     """Give a command the settings of the encoder."""
     return mesh_options(_THREADS_OPTION(command))
@@ -136,6 +158,28 @@ def take_settings(options: dict[str, Any]) -> Settings:
         return Settings(**chosen)
     except ValueError as error:
         raise click.UsageError(str(error)) from None
+
+
+def picture_options(command: Command) -> Command:
+    """Give a command the options of reading a photograph."""
+    for option in reversed(_PICTURE_OPTIONS):
+        command = option(command)
+    return command
+
+
+def take_picture_options(options: dict[str, Any]) -> PictureOptions:
+    """Options of reading photographs among a command's options, which lose them."""
+    return PictureOptions(**{item.name: options.pop(item.name) for item in fields(PictureOptions)})
+
+
+def strip_option(default: str) -> Callable[[Command], Command]:
+    """Option that says which metadata are left out; `default` is for the help."""
+    return click.option(
+        "--strip",
+        type=click.Choice(get_args(Strip)),
+        help="Metadata to leave out: private are places, serial numbers and makers' notes; all "
+        f"are all but the colour profile. Unless given, {default}.",
+    )
 
 
 quiet_option = click.option("--quiet", is_flag=True, help="No progress on a terminal.")

@@ -9,7 +9,13 @@ import click
 
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    encoder_options,
+    picture_options,
+    quiet_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import STANDARD, check_folder, check_suffix, read_photograph, write_output
 from vmesh.errors import VmeshError, describe
@@ -17,12 +23,14 @@ from vmesh.progress import Progress
 
 if TYPE_CHECKING:
     from vmesh.encoder.settings import Settings
+    from vmesh.formats.picture.options import PictureOptions
     from vmesh.limits import Limits
 
 
 @click.command("report")
 @click.argument("sources", metavar="INPUT...", nargs=-1, required=True)
 @click.option("-o", "--output", "target", metavar="OUTPUT.html", required=True, help="The page.")
+@picture_options
 @encoder_options
 @limit_options
 @quiet_option
@@ -36,6 +44,7 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
     A photograph that fails is left out and told at the end, and the status is 1.
     """
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     check_suffix(target, (".html", ".htm"))
     if target != STANDARD:
         check_folder(str(Path(target).parent))
@@ -50,7 +59,7 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
     with show_progress("reporting", n_steps, quiet=quiet) as report:
         for number, source in enumerate(sources):
             try:
-                sections.append(make_section(source, number, settings, limits, report))
+                sections.append(make_section(source, number, settings, reading, limits, report))
             except (VmeshError, OSError, ValueError, MemoryError) as error:
                 failures.append((source, describe(error)))
         if sections:
@@ -60,14 +69,19 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
 
 
 def make_section(
-    source: str, number: int, settings: Settings, limits: Limits, report: Progress
+    source: str,
+    number: int,
+    settings: Settings,
+    reading: PictureOptions,
+    limits: Limits,
+    report: Progress,
 ) -> str:
     """The section of the page on one photograph."""
     from vmesh.report.page import section_of
     from vmesh.report.study import study_with
 
     report("reading")
-    picture = read_photograph(source, limits)
+    picture = read_photograph(source, reading, limits)
     name = "standard input" if source == STANDARD else Path(source).name
     found = study_with(
         picture.array,

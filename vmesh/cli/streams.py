@@ -18,7 +18,8 @@ from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import atomic_output
 
 if TYPE_CHECKING:
-    from vmesh.formats.raster.picture import Picture
+    from vmesh.formats.picture.options import PictureOptions
+    from vmesh.formats.picture.picture import Picture
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh
 
@@ -71,20 +72,20 @@ def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh
     return mesh
 
 
-def read_photograph(path: str, limits: Limits) -> Picture:
-    """The photograph in an image file."""
+def read_photograph(path: str, options: PictureOptions, limits: Limits) -> Picture:
+    """The photograph in an image file; its notes are told on standard error."""
     data = read_input(path)
     if is_vmesh(data):
         raise ImageError(f"{path}: this is a .vmesh file, a photograph is needed")
-    return _photograph_of(data, path, limits)
+    return _photograph_of(data, path, options, limits)
 
 
-def read_mesh_or_photograph(path: str, limits: Limits) -> Mesh | Picture:
+def read_mesh_or_photograph(path: str, options: PictureOptions, limits: Limits) -> Mesh | Picture:
     """Mesh or photograph in a file, by its content; a name that ends in .vmesh promises a mesh."""
     data = read_input(path)
     if is_vmesh(data) or Path(path).suffix.lower() == FILE_SUFFIX:
         return _mesh_of(data, path, limits)
-    return _photograph_of(data, path, limits)
+    return _photograph_of(data, path, options, limits)
 
 
 def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:
@@ -98,12 +99,15 @@ def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = Fa
         raise LimitError(f"{path}: {error}") from None
 
 
-def _photograph_of(data: bytes, path: str, limits: Limits) -> Picture:
-    from vmesh.formats.raster.picture import read_picture
+def _photograph_of(data: bytes, path: str, options: PictureOptions, limits: Limits) -> Picture:
+    from vmesh.formats.picture.picture import read_picture
 
     if not data:
         raise ImageError(f"{path}: the file is empty")
     try:
-        return read_picture(io.BytesIO(data), limits=limits)
+        picture = read_picture(io.BytesIO(data), options=options, limits=limits)
     except (ImageError, LimitError) as error:
         raise type(error)(f"{path}: {error}") from None
+    for note in picture.notes:
+        click.echo(f"vmesh: {path}: {note}", err=True)
+    return picture

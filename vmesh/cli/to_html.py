@@ -7,9 +7,17 @@ from typing import Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    encoder_options,
+    picture_options,
+    quiet_option,
+    strip_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.streams import check_suffix, write_output
 from vmesh.cli.vector import convert
+from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS
 
 
@@ -21,17 +29,25 @@ from vmesh.formats.registry import FORMATS
     metavar="FILE.js",
     help="Write the script of <vmesh-image src=...> for pages of your own, and nothing else.",
 )
+@picture_options
+@strip_option("private")
 @encoder_options
 @limit_options
 @quiet_option
 def command(
-    source: str | None, target: str | None, element: str | None, quiet: bool, **options: Any
+    source: str | None,
+    target: str | None,
+    element: str | None,
+    strip: Strip | None,
+    quiet: bool,
+    **options: Any,
 ) -> None:
     """Turn a .vmesh file, or a photograph, into one HTML file that shows it in a browser.
 
     The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     if element is not None:
         if source is not None:
             raise click.UsageError("--element takes no INPUT: the script is the same for all")
@@ -40,7 +56,7 @@ def command(
     if source is None or target is None:
         raise click.UsageError("expected INPUT and OUTPUT.html, or --element FILE.js")
     check_suffix(target, (".html", ".htm"))
-    convert(source, target, FORMATS[".html"], settings, limits, quiet=quiet)
+    convert(source, target, FORMATS[".html"], settings, reading, limits, quiet=quiet, strip=strip)
 
 
 def write_element(target: str) -> None:

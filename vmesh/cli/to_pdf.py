@@ -7,9 +7,18 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    checked_by,
+    encoder_options,
+    picture_options,
+    quiet_option,
+    strip_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
+from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.pdf.page_size import points_of
 from vmesh.formats.registry import FORMATS
 
@@ -40,6 +49,8 @@ if TYPE_CHECKING:
     show_default=True,
     help="What writes the page; cairo writes 30 times as much.",
 )
+@picture_options
+@strip_option("private")
 @encoder_options
 @limit_options
 @quiet_option
@@ -49,6 +60,7 @@ def command(
     mode: Mode,
     page_width: str | None,
     backend: Backend,
+    strip: Strip | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -57,14 +69,17 @@ def command(
     The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     check_suffix(target, (".pdf",))
     convert(
         source,
         target,
         FORMATS[".pdf"],
         settings,
+        reading,
         limits,
         quiet=quiet,
+        strip=strip,
         mode=mode,
         page_width=page_width,
         backend=backend,

@@ -7,9 +7,18 @@ from typing import Any
 import click
 
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.options import checked_by, encoder_options, quiet_option, take_settings
+from vmesh.cli.options import (
+    checked_by,
+    encoder_options,
+    picture_options,
+    quiet_option,
+    strip_option,
+    take_picture_options,
+    take_settings,
+)
 from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
 from vmesh.cli.vector import convert
+from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg.size import parse_length
 from vmesh.formats.svg.style import Mode, Seams, Style
@@ -63,6 +72,8 @@ from vmesh.formats.svg.style import Mode, Seams, Style
     callback=checked_by(parse_length),
     help="Height; one of the two alone keeps the proportions.",
 )
+@picture_options
+@strip_option("private")
 @encoder_options
 @limit_options
 @quiet_option
@@ -76,6 +87,7 @@ def command(
     fit: str | None,
     width: str | None,
     height: str | None,
+    strip: Strip | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -84,6 +96,7 @@ def command(
     The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
+    reading = take_picture_options(options)
     check_suffix(target, (".svg", ".svgz"))
     wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
     try:
@@ -95,14 +108,16 @@ def command(
         target,
         wanted,
         settings,
+        reading,
         limits,
         quiet=quiet,
+        strip=strip,
         n_stages=n_stages,
         mode=mode,
         tolerance=tolerance,
         merge=merge,
         seams=seams,
-        fit=None if fit is None else read_photograph(fit, limits).array,
+        fit=None if fit is None else read_photograph(fit, reading, limits).array,
         width=width,
         height=height,
     )

@@ -7,6 +7,7 @@ from typing import Unpack
 from vmesh.cli.progress import show_progress
 from vmesh.cli.streams import read_mesh_or_photograph, write_output
 from vmesh.encoder.settings import Settings
+from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.registry import ExportOptions, Format, write_mesh
 from vmesh.limits import Limits
 
@@ -16,6 +17,7 @@ def convert(
     target: str,
     wanted: Format,
     settings: Settings,
+    reading: PictureOptions,
     limits: Limits,
     *,
     quiet: bool,
@@ -30,7 +32,7 @@ def convert(
     from vmesh.encoder.pipeline import count_steps, encode_with
     from vmesh.mesh import Mesh
 
-    given = read_mesh_or_photograph(source, limits)
+    given = read_mesh_or_photograph(source, reading, limits)
     n_steps = 1 if isinstance(given, Mesh) else 1 + count_steps(settings)
     with show_progress("converting", n_steps + n_stages, quiet=quiet) as report:
         if isinstance(given, Mesh):

@@ -16,6 +16,7 @@ from vmesh.mesh import Mesh
 
 if TYPE_CHECKING:
     from vmesh.arrays import SampleArray
+    from vmesh.formats.metadata.privacy import Strip
     from vmesh.formats.pdf.document import Backend
     from vmesh.formats.svg.size import Length
     from vmesh.formats.svg.style import Mode, Seams
@@ -42,6 +43,7 @@ class ExportOptions(TypedDict, total=False):
     backend: Backend
     ascii: bool
     progress: Progress | None
+    strip: Strip | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,8 @@ class Format:
         True of a format that holds pixels, which its writer takes in place of the mesh.
     is_compressed : bool
         True if what is written is compressed as a whole, by gzip.
+    is_public : bool
+        True of a document that is made to be shown: without private metadata unless asked for.
     """
 
     name: str
@@ -65,6 +69,7 @@ class Format:
     function: str
     is_raster: bool = False
     is_compressed: bool = False
+    is_public: bool = False
 
     def writer(self) -> Writer:
         """Writer of the format, imported when it is asked for."""
@@ -80,11 +85,13 @@ FORMATS: Final = {
     ".tif": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
     ".tiff": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
     ".pam": Format("PAM", "vmesh.formats.raster.pam", "write_pam", is_raster=True),
-    ".svg": Format("SVG", "vmesh.formats.svg.document", "write_svg"),
-    ".svgz": Format("SVG", "vmesh.formats.svg.document", "write_svg", is_compressed=True),
-    ".pdf": Format("PDF", "vmesh.formats.pdf.document", "write_pdf"),
-    ".html": Format("HTML", "vmesh.formats.html.document", "write_html"),
-    ".htm": Format("HTML", "vmesh.formats.html.document", "write_html"),
+    ".svg": Format("SVG", "vmesh.formats.svg.document", "write_svg", is_public=True),
+    ".svgz": Format(
+        "SVG", "vmesh.formats.svg.document", "write_svg", is_compressed=True, is_public=True
+    ),
+    ".pdf": Format("PDF", "vmesh.formats.pdf.document", "write_pdf", is_public=True),
+    ".html": Format("HTML", "vmesh.formats.html.document", "write_html", is_public=True),
+    ".htm": Format("HTML", "vmesh.formats.html.document", "write_html", is_public=True),
     ".ply": Format("PLY", "vmesh.formats.models.mesh_files", "write_ply"),
     ".obj": Format("OBJ", "vmesh.formats.models.mesh_files", "write_obj"),
     ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb"),
@@ -122,6 +129,11 @@ def write_mesh(
 ) -> None:
     """Write a mesh into an open file; options and errors are those of :func:`export`."""
     write, asked = target.writer(), dict[str, Any](options)
+    strip: Strip = asked.pop("strip", None) or ("private" if target.is_public else "none")
+    if strip != "none":
+        from vmesh.formats.metadata.privacy import stripped
+
+        mesh = mesh.replaced(metadata=stripped(mesh.metadata, strip))
     if target.is_raster:
         from vmesh.formats.raster.rendering import render
 
@@ -196,6 +208,9 @@ def export(
         For PLY true to get text.
     progress : callable
         For SVG, called with the name of each stage as it begins.
+    strip : {"none", "private", "all"}
+        Metadata that are left out: places, serial numbers and makers' notes, or all but the colour
+        profile. "private" for SVG, PDF and HTML unless given, else "none".
 
     Raises
     ------

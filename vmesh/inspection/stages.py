@@ -11,7 +11,7 @@ from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.inspection.heat import error_levels
 from vmesh.limits import DEFAULT_LIMITS, Limits

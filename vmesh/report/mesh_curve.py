@@ -8,7 +8,7 @@ from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.settings import Settings
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.limits import Limits
 from vmesh.mesh import Mesh, Metadata

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from vmesh.arrays import UInt8Array
 from vmesh.formats.html.document import VIEWER, fill_page
 from vmesh.formats.metadata.description import Description
-from vmesh.formats.raster.picture import resize
+from vmesh.formats.picture.conversion import resize
 from vmesh.formats.raster.rendering import png_of
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION

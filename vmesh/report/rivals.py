@@ -11,7 +11,8 @@ from PIL import Image
 
 from vmesh.arrays import UInt8Array
 from vmesh.errors import ImageError
-from vmesh.formats.raster.picture import flatten, read_picture
+from vmesh.formats.picture.conversion import flatten
+from vmesh.formats.picture.picture import read_picture
 from vmesh.formats.raster.rendering import LONGEST_SIDES
 from vmesh.limits import MAX_SIDE, Limits
 from vmesh.metrics import psnr

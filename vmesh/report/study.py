@@ -24,7 +24,7 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata

@@ -25,7 +25,7 @@ import numpy as np
 from PIL import ImageFont
 
 from vmesh.arrays import BoolArray, Float64Array, UInt8Array
-from vmesh.formats.raster.picture import flatten
+from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.region import render_part
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh

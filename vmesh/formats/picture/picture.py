@@ -1,4 +1,4 @@
-"""Image files -> arrays, through Pillow."""
+"""Image files -> pictures: arrays with their metadata, through Pillow."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from typing import BinaryIO, Final
 import numpy as np
 from PIL import Image, ImageOps
 
-from vmesh.arrays import SampleArray, UInt8Array
-from vmesh.color_lattice import rescale
+from vmesh.arrays import SampleArray
 from vmesh.errors import ImageError
 from vmesh.formats.metadata.exif import (
     EXIF_START,
@@ -20,6 +19,7 @@ from vmesh.formats.metadata.exif import (
     X_RESOLUTION,
     Y_RESOLUTION,
 )
+from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
 from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata
@@ -47,13 +47,21 @@ class Picture:
         uint8, shape (h, w), (h, w, 3) or (h, w, 4), upright; or uint16, shape (h, w).
     metadata : Metadata
         ICC profile, EXIF without its orientation, XMP.
+    notes : tuple of str
+        Sentences for the user about what was left out, or had to be guessed.
     """
 
     array: SampleArray
     metadata: Metadata
+    notes: tuple[str, ...] = ()
 
 
-def read_picture(stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS) -> Picture:
+def read_picture(
+    stream: BinaryIO,
+    *,
+    options: PictureOptions = DEFAULT_OPTIONS,
+    limits: Limits = DEFAULT_LIMITS,
+) -> Picture:
     """The photograph in an open file.
 
     Its EXIF orientation is applied, alpha and palettes are resolved, and of an animation the first
@@ -159,27 +167,3 @@ def _exif_of(image: Image.Image) -> bytes:
         return exif.tobytes().removeprefix(EXIF_START) if len(exif) else b""
     except Exception:  # a block that makes no sense is not worth the picture
         return b""
-
-
-def flatten(array: SampleArray, depth: int | None = None) -> UInt8Array:
-    """A picture as RGB of 8 bits on white, shape (h, w, 3), uint8.
-
-    `array` has shape (h, w) or (h, w, c) with c of 1, 3 or 4, and samples of `depth` bits: as many
-    as its type holds, unless given.
-    """
-    array = rescale(array, depth or 8 * array.dtype.itemsize, 8)
-    if array.ndim == 2:
-        array = array[:, :, None]
-    if array.shape[2] == 1:
-        return np.repeat(array, 3, axis=2)
-    if array.shape[2] == 3:
-        return array
-    alpha = array[:, :, 3:].astype(np.int64)
-    return ((array[:, :, :3] * alpha + 255 * (255 - alpha) + 127) // 255).astype(np.uint8)
-
-
-def resize(array: UInt8Array, size: tuple[int, int]) -> UInt8Array:
-    """A picture of shape (h, w, 3) at another width and height, by bicubic resampling."""
-    if (array.shape[1], array.shape[0]) == size:
-        return array
-    return np.asarray(Image.fromarray(array).resize(size, Image.Resampling.BICUBIC))
