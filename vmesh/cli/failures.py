@@ -49,3 +49,9 @@ def end_with(failures: Iterable[tuple[str, str]]) -> None:
         click.echo(f"vmesh: {sentence}", err=True)
     if failed:
         sys.exit(1)
+
+
+def tell_trouble(sentence: str | None) -> None:
+    """Say what hindered a command that did its work all the same, if anything did."""
+    if sentence is not None and sys.stderr is not None and not sys.stderr.closed:
+        click.echo(f"vmesh: {sentence}", err=True)

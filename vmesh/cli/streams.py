@@ -30,11 +30,16 @@ STANDARD_OUTPUT: Final = "standard output"
 
 def read_input(path: str) -> bytes:
     """Bytes of a file or of standard input."""
-    if path != STANDARD:
-        return Path(path).read_bytes()
-    if sys.stdin is None:
-        raise OSError("standard input is closed")
-    return sys.stdin.buffer.read()
+    try:
+        if path != STANDARD:
+            return Path(path).read_bytes()
+        if sys.stdin is None:
+            raise OSError("standard input is closed")
+        return sys.stdin.buffer.read()
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = "standard input" if path == STANDARD else path
+        raise
 
 
 def write_output(
