@@ -206,7 +206,7 @@ def find_inputs(paths: Iterable[str], output: str | None, kind: Kind) -> list[So
     named = list(paths)
     if STANDARD in named and len(named) > 1:
         raise click.UsageError("standard input is one input, and cannot be among others")
-    return find_sources(named, output, kind)
+    return find_sources(named, output, kind).sources
 
 
 def _single(paths: tuple[str, ...], output: str | None, making: Making) -> tuple[str, str]:

@@ -93,6 +93,7 @@ def _run() -> int:
         cli.main(standalone_mode=False)
         if sys.stdout is not None:
             sys.stdout.flush()
+        return 0
     except SystemExit as stop:
         return stop.code if isinstance(stop.code, int) else 0
     except click.exceptions.Exit as stop:
