@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,10 @@ from PIL import Image
 
 import vmesh
 from tests.batch.pictures import write_pictures
-from tests.cli.program import fail, run, succeed
+from tests.cli.program import Program, fail, run, succeed
 from vmesh.arrays import UInt8Array
 from vmesh.batch.journal import NAME
+from vmesh.batch.task import Outcome, Task
 
 FAST = ("-e", "1", "--vertices", "60", "-j", "2")
 
@@ -257,29 +259,47 @@ def test_what_is_there_is_kept_if_asked_for_and_what_is_protected_unless_asked_f
     assert "--force" in fail(2, "batch", photo, "-o", out, "--force", "--no-overwrite")
 
 
-def test_code_that_cannot_be_kept_is_told_once_and_not_by_every_process(
-    photos: Path, tmp_path: Path
+def test_code_that_cannot_be_kept_is_told_once_and_not_for_every_process(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip("resource")
-    script = (
-        "import resource, signal, sys\n"
-        "from vmesh.cli.main import main\n"
-        "if __name__ == '__main__':\n"
-        "    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))\n"
-        "    main()\n"
-    )
-    program = tmp_path / "program.py"
-    program.write_text(script)
-    cache = tmp_path / "cache"
-    done = subprocess.run(
-        [sys.executable, program, "batch", photos, "-o", tmp_path / "out", *FAST],
-        env={**os.environ, "NUMBA_CACHE_DIR": str(cache)},
-        capture_output=True,
-        check=False,
-    )
-    told = done.stderr.decode()
-    assert done.returncode == 0, told
-    assert told.startswith(f"vmesh: compiled code could not be kept in {cache}")
-    assert told.count("\n") == 1
-    assert files_in(tmp_path / "out") == {"00.vmesh", "01.vmesh", "sea/00.vmesh"}
+    def troubled(tasks: Iterable[Task], _: int) -> Iterator[Outcome]:
+        for task in tasks:
+            yield Outcome(task.source, "done", trouble="compiled code could not be kept")
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", troubled)
+    status, output, told = program.run("batch", photos, "-o", tmp_path / "out", "--json")
+    assert (status, told) == (0, "vmesh: compiled code could not be kept\n")
+    assert len(output.splitlines()) == 3
+
+
+def test_what_is_to_be_told_of_a_photograph_is_told(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def noted(tasks: Iterable[Task], _: int) -> Iterator[Outcome]:
+        for task in tasks:
+            yield Outcome(task.source, "done", notes=("its profile was left out",))
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", noted)
+    photo = photos / "00.png"
+    status, _, told = program.run("batch", photo, "-o", tmp_path / "out")
+    assert (status, told) == (0, f"vmesh: {photo}: its profile was left out\n")
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="processes are not bound")
+def test_as_many_processes_work_as_there_are_processors_to_use(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def counted(_: Iterable[Task], n_jobs: int) -> Iterator[Outcome]:
+        asked.append(n_jobs)
+        yield from ()
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", counted)
+    before = os.sched_getaffinity(0)
+    try:
+        os.sched_setaffinity(0, {min(before)})
+        program.succeed("batch", photos, "-o", tmp_path / "out")
+    finally:
+        os.sched_setaffinity(0, before)
+    assert asked == [1]
