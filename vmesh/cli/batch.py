@@ -18,7 +18,7 @@ from vmesh.batch.processes import run_in_processes
 from vmesh.batch.sources import PICTURES, PICTURES_AND_MESHES, find_sources
 from vmesh.batch.task import Outcome, Recipe
 from vmesh.cli.failures import end_with, tell_trouble
-from vmesh.cli.jobs import preserve_option
+from vmesh.cli.jobs import check_no_file, preserve_option
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     mesh_options,
@@ -29,7 +29,7 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_files
-from vmesh.cli.streams import STANDARD, make_folder, tell
+from vmesh.cli.streams import STANDARD, make_folder, remark, tell
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.errors import shown
 from vmesh.formats.metadata.privacy import Strip
@@ -65,7 +65,6 @@ class SuffixesType(click.ParamType[tuple[str, ...]]):
     "--output",
     metavar="DIR",
     required=True,
-    type=click.Path(file_okay=False),
     help="Folder for the outputs, made if there is none.",
 )
 @click.option(
@@ -137,6 +136,7 @@ def command(
     )
     if STANDARD in sources:
         raise click.UsageError("batch reads files, not standard input")
+    check_no_file(output)
     if scheduler is not None:
         if jobs is not None:
             raise click.UsageError("-j is for this machine, --scheduler for others")
@@ -188,7 +188,7 @@ def show_outcomes(outcomes: Iterable[Outcome], report: Progress, *, as_json: boo
             del figures["trouble"]
             tell(json.dumps(figures))
         for note in outcome.notes:
-            click.echo(f"vmesh: {shown(outcome.source)}: {note}", err=True)
+            remark(f"{outcome.source}: {note}")
         if outcome.status != "skipped":
             report(shown(Path(outcome.source).name))
         done.append(outcome)
@@ -199,11 +199,9 @@ def tell_what_was_left(outcomes: list[Outcome], passed_over: list[Path]) -> None
     """Say how many sources were skipped, and what in the folders was no source."""
     n_skipped = sum(outcome.status == "skipped" for outcome in outcomes)
     if n_skipped:
-        click.echo(
-            f"vmesh: {n_skipped} of {len(outcomes)} skipped: their outputs are there", err=True
-        )
+        remark(f"{n_skipped} of {len(outcomes)} skipped: their outputs are there")
     if passed_over:
         names = ", ".join(shown(path.name) for path in passed_over[:_N_NAMED])
         more = len(passed_over) - _N_NAMED
         rest = f" and {more} more" if more > 0 else ""
-        click.echo(f"vmesh: passed over in folders: {names}{rest}", err=True)
+        remark(f"passed over in folders: {names}{rest}")

@@ -12,9 +12,9 @@ from typing import Final
 import click
 
 from vmesh.cli.failures import is_of_output, tell_trouble
-from vmesh.cli.streams import STANDARD_OUTPUT
+from vmesh.cli.streams import STANDARD_OUTPUT, remark
 from vmesh.cli.version import version_option
-from vmesh.errors import VmeshError, describe
+from vmesh.errors import VmeshError, describe, shown
 
 # Command -> its module and its line in the overview; modules are imported when used.
 COMMANDS: Final = {
@@ -80,7 +80,8 @@ def main() -> None:
         if isinstance(stream, TextIOWrapper):  # What a terminal cannot show, it shows escaped.
             stream.reconfigure(errors="backslashreplace")
     status = _run()
-    if "vmesh.kernels.jit" in sys.modules:
+    can_tell = sys.stderr is not None and not sys.stderr.closed
+    if can_tell and "vmesh.kernels.jit" in sys.modules:
         from vmesh.kernels.jit import take_trouble
 
         tell_trouble(take_trouble())
@@ -101,13 +102,15 @@ def _run() -> int:
     except click.exceptions.Abort as stop:
         if not isinstance(stop.__cause__, EOFError):
             return 130
-        click.echo(f"vmesh: {describe(stop.__cause__)}", err=True)
+        remark(describe(stop.__cause__))
     except click.UsageError as error:
-        error.show()
+        lines = error.format_message().split("\n")
+        click.UsageError("\n".join(map(shown, lines)), error.ctx).show()
         return 2
     except BrokenPipeError:
         # The reader of our output has gone: nobody is left to tell.
-        sys.stderr.close()
+        if sys.stderr is not None:
+            sys.stderr.close()
     except (VmeshError, OSError, ValueError, MemoryError) as error:
         if isinstance(error, OSError) and error.filename is None and error.errno in _OF_WRITING:
             error.filename = STANDARD_OUTPUT
@@ -115,5 +118,5 @@ def _run() -> int:
             # Python would try again at the end, and say so in lines of its own.
             with suppress(OSError):
                 sys.stdout.close()
-        click.echo(f"vmesh: {describe(error)}", err=True)
+        remark(describe(error))
     return 1
