@@ -222,7 +222,11 @@ class _Draft:
                 self._target.open("xb").close()
             except FileExistsError:
                 raise self._is_there() from None
-            path.replace(self._target)
+            try:
+                path.replace(self._target)
+            except OSError:
+                self._target.unlink()
+                raise
 
     def _is_there(self) -> FileExistsError:
         text = "is there already and was left as it is"

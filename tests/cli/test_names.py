@@ -129,3 +129,12 @@ def test_a_reader_that_goes_is_told_nothing(mesh: Path) -> None:
     command = f'{sys.executable} -m vmesh dump --mesh "$0" | head -c 10'
     done = subprocess.run(["sh", "-c", command, str(mesh)], capture_output=True, check=False)
     assert done.stderr == b""
+
+
+def test_code_that_cannot_be_kept_is_told_beside_what_was_asked_for(
+    mesh: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("vmesh.kernels.jit.take_trouble", lambda: "compiled code was not kept")
+    status, output, told = program.run("decode", mesh, tmp_path / "out.png")
+    assert (status, output, told) == (0, "", "vmesh: compiled code was not kept\n")
+    assert (tmp_path / "out.png").exists()
