@@ -1,0 +1,181 @@
+"""Pictures in files that were cut off: what is there of them, and how much that is.
+
+A file is read as far as it goes, and once more with noise in place of what is missing. What both
+readings agree on is there; the rest depends on bytes that nobody has.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from PIL import Image, ImageFile
+
+from vmesh.arrays import BoolArray
+from vmesh.formats.picture.jpeg import has_all_scans, has_first_scan, is_jpeg
+
+_READING: Final = threading.Lock()  # Pillow's tolerance is a global variable
+_MOST_MISSING: Final = 1 << 26  # that a header makes us believe in
+_SLACK: Final = 1 << 16
+_MOST_BYTES: Final = 4  # of a pixel, in whatever format
+_N_NOISES: Final = 2
+_GREY: Final = 128
+
+Decode = Callable[[bytes], Image.Image]
+
+
+@dataclass(frozen=True, slots=True)
+class Partial:
+    """Part of a picture.
+
+    Parameters
+    ----------
+    image : Image
+        With the missing pixels in grey, or transparent where there is alpha.
+    share : float or None
+        Of the pixels, from 0 to 1, that is there; None if nobody knows.
+    is_coarse : bool
+        True if all of it is there, but not with all of its detail.
+    """
+
+    image: Image.Image
+    share: float | None
+    is_coarse: bool = False
+
+
+def how_much(share: float | None, *, is_coarse: bool = False) -> str:
+    """Words for a share of a picture."""
+    if is_coarse:
+        return "all of its picture is there, but without its finest detail"
+    if share is None:
+        return "a part of its picture is there"
+    percent = round(100 * share)
+    if 0 < share < 1:
+        percent = min(99, max(1, percent))
+    return f"about {percent} % of its picture is there"
+
+
+def refusal(share: float | None, *, is_coarse: bool = False) -> str:
+    """Words that refuse a file that was cut off."""
+    if share == 0 and not is_coarse:
+        return "the file is cut off: nothing of its picture is there"
+    return (
+        f"the file is cut off: {how_much(share, is_coarse=is_coarse)}; "
+        "--allow-truncated reads it as it is"
+    )
+
+
+def note(share: float | None, *, is_coarse: bool = False) -> str:
+    """Words about a picture that was read although its file is cut off."""
+    if share == 1 and not is_coarse:
+        return "the end of the file is missing, but nothing of its picture is"
+    return f"the file is cut off: {how_much(share, is_coarse=is_coarse)}"
+
+
+def read_partly(data: bytes, decode: Decode) -> Partial | None:
+    """What there is of a picture, None if its decoder makes nothing of a part.
+
+    Parameters
+    ----------
+    data : bytes
+    decode : callable
+        Opens and loads an image.
+    """
+    with _tolerance():
+        try:
+            image = decode(data)
+        except MemoryError:
+            raise
+        except Exception:
+            image = None
+        if image is None:
+            n_missing = _n_missing(data)
+            if not n_missing:
+                return None
+            try:
+                image = decode(data + bytes(n_missing))
+            except MemoryError:
+                raise
+            except Exception:  # of whatever kind: it needs all of the file
+                return None
+        agreement = _agreement(data, image, decode)
+    share = float(agreement.mean())
+    if is_jpeg(data):
+        # libjpeg fills up by itself, and what is refined halfway is there all the same.
+        if share == 1:
+            return Partial(image, 1.0, is_coarse=not has_all_scans(data))
+        return Partial(image, share, is_coarse=has_first_scan(data))
+    # Where noise changes nothing, the decoder took none of it.
+    return Partial(_greyed(image, ~agreement), share if share < 1 else None)
+
+
+def is_cut_in_boxes(data: bytes) -> bool:
+    """True if a file of boxes, as HEIC, AVIF and JPEG 2000 are, ends within one."""
+    if data[4:8] not in (b"ftyp", b"jP  ", b"JXL "):
+        return False
+    at = 0
+    while at + 8 <= len(data):
+        length = int.from_bytes(data[at : at + 4], "big")
+        if length == 1:
+            length = int.from_bytes(data[at + 8 : at + 16], "big")
+        if length == 0:
+            return False
+        at += max(8, length)
+    return at != len(data)
+
+
+@contextmanager
+def _tolerance() -> Iterator[None]:
+    """Let Pillow's decoders stop where a file ends."""
+    with _READING:
+        before = ImageFile.LOAD_TRUNCATED_IMAGES
+        ImageFile.LOAD_TRUNCATED_IMAGES = True
+        try:
+            yield
+        finally:
+            ImageFile.LOAD_TRUNCATED_IMAGES = before
+
+
+def _agreement(data: bytes, image: Image.Image, decode: Decode) -> BoolArray:
+    """Where an image stays the same if noise follows its data, shape (h, w)."""
+    n_bytes = 1 if is_jpeg(data) else _MOST_BYTES
+    n_noise = max(_n_missing(data), n_bytes * image.width * image.height + _SLACK)
+    is_same = np.ones((image.height, image.width), dtype=bool)
+    for seed in range(_N_NOISES):
+        # Without 255, which begins the markers of JPEG.
+        noise = np.random.default_rng(seed).integers(1, 255, n_noise, dtype=np.uint8)
+        try:
+            other = decode(data + noise.tobytes())
+        except MemoryError:
+            raise
+        except Exception:  # of whatever kind: this noise says nothing
+            continue
+        if other.size == image.size and other.mode == image.mode:
+            equal = np.asarray(image) == np.asarray(other)
+            is_same &= equal if equal.ndim == 2 else equal.all(axis=2)
+    return is_same
+
+
+def _greyed(image: Image.Image, is_missing: BoolArray) -> Image.Image:
+    """An image with some pixels in grey, or transparent where there is alpha."""
+    if not is_missing.any():
+        return image
+    info = image.info
+    if image.mode not in ("L", "RGB", "RGBA"):
+        image = image.convert("RGBA" if image.has_transparency_data else "RGB")
+    pixels = np.array(image)
+    pixels[is_missing] = 0 if image.mode == "RGBA" else _GREY
+    greyed = Image.fromarray(pixels)
+    greyed.info = info
+    return greyed
+
+
+def _n_missing(data: bytes) -> int:
+    """Bytes that a RIFF file lacks by its own header; none of other files."""
+    if data[:4] != b"RIFF":
+        return 0
+    return min(_MOST_MISSING, max(0, int.from_bytes(data[4:8], "little") + 8 - len(data)))
