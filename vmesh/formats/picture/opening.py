@@ -122,6 +122,10 @@ def _refusal(data: bytes, error: Exception) -> ImageError:
     if known:
         reason = "it makes no sense" if isinstance(error, UnidentifiedImageError) else error
         return DamagedError(f"the image is damaged: as a {known[0]} file, {reason}")
+    if b"PNG" in data[:8]:
+        return ImageError(
+            "the image is damaged: the start of this PNG file was changed, as by a transfer as text"
+        )
     foreign = describe_foreign(data)
     return ImageError(
         f"this is {foreign}" if foreign else "not an image in a format that can be read"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -130,15 +130,16 @@ def _turned(array: SampleArray, orientation: int) -> SampleArray:
 
 def _within(metadata: Metadata, limits: Limits) -> tuple[Metadata, tuple[str, ...]]:
     """Metadata without their longest blocks where all together are over the limit."""
-    notes = []
-    while (longest := max((metadata.icc, metadata.exif, metadata.xmp), key=len)) and (
-        len(metadata.icc) + len(metadata.exif) + len(metadata.xmp) > limits.max_metadata
-    ):
-        for name in ("icc", "exif", "xmp"):
-            if getattr(metadata, name) is longest:
-                metadata = replace(metadata, **{name: b""})
-                notes.append(f"its {name.upper()} of {len(longest)} bytes was left out")
-    return metadata, tuple(notes)
+    blocks = [("ICC", metadata.icc), ("EXIF", metadata.exif), ("XMP", metadata.xmp)]
+    blocks.sort(key=lambda block: len(block[1]))
+    left_out = []
+    while sum(len(content) for _, content in blocks) > limits.max_metadata:
+        left_out.append(blocks.pop())
+    kept = dict(blocks)
+    return (
+        Metadata(icc=kept.get("ICC", b""), exif=kept.get("EXIF", b""), xmp=kept.get("XMP", b"")),
+        tuple(f"its {name} of {len(content)} bytes was left out" for name, content in left_out),
+    )
 
 
 def _upright(image: Image.Image) -> Image.Image:

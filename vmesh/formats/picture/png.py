@@ -50,6 +50,11 @@ class Header(NamedTuple):
     filtering: int
     interlacing: int
 
+    @property
+    def n_bytes(self) -> int:
+        """Bytes of the filtered samples."""
+        return sum(n_rows * n_bytes for n_rows, n_bytes in self.passes())
+
     def passes(self) -> list[tuple[int, int]]:
         """Rows of each pass, one if it is not interlaced, with the bytes that a row takes."""
         n_bits = self.depth * _N_SAMPLES[self.color_type]
@@ -74,6 +79,8 @@ class Png:
         Profile and XMP, inflated.
     key : tuple of int, optional
         Grey level, or red, green and blue, at the depth of the file, that is transparent.
+    gamma, chromaticities : bytes
+        Contents of gAMA and cHRM, empty if a profile or sRGB goes before them.
     is_whole : bool
         True if the file goes on to its last chunk.
     notes : tuple of str
@@ -85,6 +92,8 @@ class Png:
     icc: bytes = b""
     xmp: bytes = b""
     key: tuple[int, ...] | None = None
+    gamma: bytes = b""
+    chromaticities: bytes = b""
     is_whole: bool = True
     notes: tuple[str, ...] = ()
 
@@ -105,11 +114,30 @@ class Png:
         return replace(self, header=Header(1, 1, 8, _GREY, 0, 0, 0))._joined(chunks)
 
     def samples(self) -> SampleArray:
-        """Samples of 16 bits, shape (h, w, c), uint16, c being 2, 3 or 4."""
+        """Samples of 16 bits, shape (h, w, c), uint16, c being 2, 3 or 4.
+
+        A pass of an interlaced picture is filtered as a picture of its own, and read as one.
+        """
         import imagecodecs
 
-        chunks = [chunk for chunk in self.chunks if chunk[0] in (b"IDAT", b"IEND")]
-        return np.asarray(imagecodecs.png_decode(self._joined(chunks)))
+        if not self.header.interlacing:
+            chunks = [chunk for chunk in self.chunks if chunk[0] in (b"IDAT", b"IEND")]
+            return np.asarray(imagecodecs.png_decode(self._joined(chunks)))
+        width, height = self.header[:2]
+        samples = np.zeros((height, width, _N_SAMPLES[self.header.color_type]), dtype=np.uint16)
+        filtered, at = self._inflated(), 0
+        for place, (n_rows, n_bytes) in zip(PASSES, self.header.passes(), strict=True):
+            part = filtered[at : at + n_rows * n_bytes]
+            at += n_rows * n_bytes
+            if part:
+                n_columns = place.size(width, height)[0]
+                header = self.header._replace(width=n_columns, height=n_rows, interlacing=0)
+                chunks = [(b"IDAT", zlib.compress(part, 1)), (b"IEND", b"")]
+                pixels = imagecodecs.png_decode(replace(self, header=header)._joined(chunks))
+                samples[place.y :: place.rows, place.x :: place.columns] = pixels
+        if at > len(filtered):
+            raise EOFError("samples are missing")
+        return samples
 
     def mended(self) -> tuple[Png, list[int], float]:
         """The still picture of a file that was cut off, with what is missing of it.
@@ -125,8 +153,8 @@ class Png:
             Of the samples, from 0 to 1.
         """
         passes = self.header.passes()
-        wanted = sum(n_rows * n_bytes for n_rows, n_bytes in passes)
-        there = _inflate_some((data for kind, data in self.chunks if kind == b"IDAT"), wanted)
+        wanted = self.header.n_bytes
+        there = self._inflated()
         n_left, n_there = len(there), []
         is_grey = self.header.color_type in (_GREY, _RGB) and self.header.depth >= 8
         rows: list[bytes] = []
@@ -142,6 +170,11 @@ class Png:
         filled = zlib.compress(there[:kept] + b"".join(rows), 1)
         chunks += [(b"IDAT", filled), (b"IEND", b"")]
         return replace(self, chunks=chunks, is_whole=True), n_there, len(there) / max(1, wanted)
+
+    def _inflated(self) -> bytes:
+        """Filtered samples, as far as they can be inflated."""
+        pieces = (data for kind, data in self.chunks if kind == b"IDAT")
+        return _inflate_some(pieces, self.header.n_bytes)
 
     def _joined(self, chunks: list[_Chunk]) -> bytes:
         header = (b"IHDR", struct.pack(">IIBBBBB", *self.header))
@@ -170,6 +203,10 @@ def read_png(data: bytes, limits: Limits) -> Png:
             f"the image is damaged: there are no PNG files of {header.depth} bits and "
             f"colour type {header.color_type}"
         )
+    if not any(kind == b"IDAT" for kind, _ in chunks):
+        raise ImageError("the image is damaged: there are no samples in this PNG file")
+    named = dict(chunks)
+    has_space = not named.keys().isdisjoint((b"iCCP", b"sRGB", b"cICP"))
     kept: list[_Chunk] = []
     icc = xmp = b""
     key: tuple[int, ...] | None = None
@@ -197,7 +234,10 @@ def read_png(data: bytes, limits: Limits) -> Png:
             )
         except (zlib.error, struct.error, IndexError):
             continue  # a block that makes no sense is not worth the picture
-    return Png(header, kept, icc, xmp, key, is_whole, tuple(notes))
+    gamma, chromaticities = (
+        b"" if has_space else named.get(kind, b"") for kind in (b"gAMA", b"cHRM")
+    )
+    return Png(header, kept, icc, xmp, key, gamma, chromaticities, is_whole, tuple(notes))
 
 
 class _TooLongError(Exception):
