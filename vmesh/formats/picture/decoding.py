@@ -13,6 +13,7 @@ from vmesh.formats.picture import truncation
 from vmesh.formats.picture.adam7 import fill_blocks
 from vmesh.formats.picture.depths import rounding_note
 from vmesh.formats.picture.gamma import in_srgb
+from vmesh.formats.picture.jpeg2000 import depth_of_jpeg2000, read_jpeg2000
 from vmesh.formats.picture.modes import array_of
 from vmesh.formats.picture.opening import DamagedError, check_size, open_image
 from vmesh.formats.picture.options import PictureOptions
@@ -56,6 +57,8 @@ def decode(data: bytes, options: PictureOptions, limits: Limits) -> Decoded:
         return _decode_png(data, options, limits)
     if is_tiff(data):
         return _decode_tiff(data, options, limits)
+    if depth_of_jpeg2000(data) > 8:
+        return _decode_jpeg2000(data, limits)
     return _decode_by_pillow(data, options, limits)
 
 
@@ -126,6 +129,20 @@ def _decode_tiff(data: bytes, options: PictureOptions, limits: Limits) -> Decode
     return Decoded(carrier_of(data, page.index), samples, notes=notes + more)
 
 
+def _decode_jpeg2000(data: bytes, limits: Limits) -> Decoded:
+    image = open_image(data, limits)
+    check_size(image.size, limits)
+    try:
+        samples, notes = read_jpeg2000(data)
+    except (ImageError, MemoryError):
+        raise
+    except Exception as error:
+        raise ImageError(_fault(data, error)) from None
+    carrier = Image.new("L", (1, 1))
+    carrier.info = dict(image.info)
+    return Decoded(carrier, samples, notes=notes)
+
+
 def _decode_by_pillow(data: bytes, options: PictureOptions, limits: Limits) -> Decoded:
     notes: tuple[str, ...] = ()
 
@@ -145,8 +162,8 @@ def _decode_by_pillow(data: bytes, options: PictureOptions, limits: Limits) -> D
         # Decoders of damaged images raise errors of many kinds.
         if isinstance(error, ImageError) and not isinstance(error, DamagedError):
             raise
-        part = truncation.read_partly(data, load)
-        if part is None:
+        part = None if truncation.is_cut_in_boxes(data) else truncation.read_partly(data, load)
+        if part is None or part.share == 0:
             raise ImageError(_fault(data, error)) from None
         is_complete = part.share == 1 and not part.is_coarse
         if not is_complete and not options.allow_truncated:
@@ -154,7 +171,7 @@ def _decode_by_pillow(data: bytes, options: PictureOptions, limits: Limits) -> D
         image = part.image
         notes += (truncation.note(part.share, is_coarse=part.is_coarse),)
     # What JPEG XL keeps of a JPEG lies as in the JPEG, all else as it is to be shown.
-    is_upright = image.format == "JXL" and not getattr(image, "jpeg", False)
+    is_upright = image.format in ("HEIF", "JXL") and not getattr(image, "jpeg", False)
     return Decoded(image, is_upright=is_upright, notes=notes + rounding_note(data, image))
 
 
@@ -179,4 +196,6 @@ def _fault(data: bytes, error: Exception) -> str:
     """Words about a file of which nothing can be read."""
     if truncation.is_cut_in_boxes(data):
         return "the file is cut off, and pictures of its format can only be read whole"
+    if truncation.ends_early(error):
+        return "the file is cut off: nothing of its picture is there"
     return str(error) if isinstance(error, DamagedError) else f"the image is damaged: {error}"

@@ -107,7 +107,9 @@ def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
     """Picture of what a file held, turned upright, with metadata within the limits."""
     image = decoded.image
     if decoded.is_upright:
-        image.getexif().pop(_ORIENTATION, None)
+        exif = image.getexif()
+        exif.pop(_ORIENTATION, None)
+        image.info["exif"] = exif.tobytes() if len(exif) else b""
     if decoded.samples is None:
         picture = picture_of(image)
     else:

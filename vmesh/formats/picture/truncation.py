@@ -61,8 +61,6 @@ def how_much(share: float | None, *, is_coarse: bool = False) -> str:
 
 def refusal(share: float | None, *, is_coarse: bool = False) -> str:
     """Words that refuse a file that was cut off."""
-    if share == 0 and not is_coarse:
-        return "the file is cut off: nothing of its picture is there"
     return (
         f"the file is cut off: {how_much(share, is_coarse=is_coarse)}; "
         "--allow-truncated reads it as it is"
@@ -103,6 +101,9 @@ def read_partly(data: bytes, decode: Decode) -> Partial | None:
             except Exception:  # of whatever kind: it needs all of the file
                 return None
         agreement = _agreement(data, image, decode)
+    low, high = image.convert("L").getextrema()
+    if agreement.all() and low == high and not is_jpeg(data):
+        return Partial(image, 0.0)  # the decoder left all as it was
     share = float(agreement.mean())
     if is_jpeg(data):
         # libjpeg fills up by itself, and what is refined halfway is there all the same.
@@ -111,6 +112,11 @@ def read_partly(data: bytes, decode: Decode) -> Partial | None:
         return Partial(image, share, is_coarse=has_first_scan(data))
     # Where noise changes nothing, the decoder took none of it.
     return Partial(_greyed(image, ~agreement), share if share < 1 else None)
+
+
+def ends_early(error: Exception) -> bool:
+    """True of errors by which Pillow's decoders say that a file ends too early."""
+    return isinstance(error, EOFError) or "truncated" in str(error).lower()
 
 
 def is_cut_in_boxes(data: bytes) -> bool:
