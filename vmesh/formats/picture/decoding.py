@@ -74,7 +74,8 @@ def _decode_png(data: bytes, options: PictureOptions, limits: Limits) -> Decoded
     except Exception as error:
         # Decoders of damaged images raise errors of many kinds.
         mended, n_rows, share = png.mended()
-        if share < 1 and not options.allow_truncated:
+        share = share if any(n_rows) else 0.0
+        if share == 0 or (share < 1 and not options.allow_truncated):
             if png.is_whole:
                 raise ImageError(f"the image is damaged: {error}") from None
             raise ImageError(truncation.refusal(share)) from None
@@ -123,7 +124,7 @@ def _decode_tiff(data: bytes, options: PictureOptions, limits: Limits) -> Decode
             return Decoded(_loaded(image), notes=notes)
     samples, more, share = read_samples(data, page.index, limits, allow_missing=page.is_cut)
     if page.is_cut:
-        if not options.allow_truncated:
+        if share == 0 or (share < 1 and not options.allow_truncated):
             raise ImageError(truncation.refusal(share))
         more += (truncation.note(share),)
     return Decoded(carrier_of(data, page.index), samples, notes=notes + more)
@@ -196,6 +197,6 @@ def _fault(data: bytes, error: Exception) -> str:
     """Words about a file of which nothing can be read."""
     if truncation.is_cut_in_boxes(data):
         return "the file is cut off, and pictures of its format can only be read whole"
-    if truncation.ends_early(error):
-        return "the file is cut off: nothing of its picture is there"
+    if truncation.is_cut_in_riff(data) or truncation.ends_early(error):
+        return truncation.NOTHING
     return str(error) if isinstance(error, DamagedError) else f"the image is damaged: {error}"

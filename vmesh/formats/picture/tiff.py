@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import io
 import logging
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -41,7 +42,8 @@ _BACK_TO_FRONT, _GREY, _RGB = 0, 1, 2  # kinds of colours, tag PhotometricInterp
 _UNSIGNED: Final = (1, 4)  # tag SampleFormat: integers, or not said
 _ASSOCIATED, _UNASSOCIATED = 1, 2  # tag ExtraSamples: alpha
 _REDUCED, _MASK = 1, 4  # bits of the tag NewSubfileType
-_NO_COMPRESSION: Final = 1
+_NO_COMPRESSION, _LZW, _PACKBITS, _DEFLATE = 1, 5, 32773, (8, 32946)
+_JPEG: Final = (6, 7, 34892, 33007)
 _MOST_SAMPLES: Final = 32  # of a pixel
 _MOST_PAGES: Final = 10_000
 _MOST_BYTES: Final = 8  # of a strip or tile, for each pixel that a picture may have
@@ -49,7 +51,7 @@ _MOST_BYTES: Final = 8  # of a strip or tile, for each pixel that a picture may 
 # What cameras write that is no picture yet: colours in mosaics, and compressions of their own.
 _MOSAICS: Final = (32803, 34892)
 _RAW_COMPRESSIONS: Final = (34713, 32767, 32769, 32770, 65000, 65535)
-_DNG_VERSION, _ICC, _XMP = 50706, 34675, 700
+_BITS_PER_SAMPLE, _DNG_VERSION, _ICC, _XMP = 258, 50706, 34675, 700
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,15 +220,16 @@ def _is_raw(page: TiffPage) -> bool:
 
 def _check(page: TiffPage, limits: Limits) -> None:
     """Refuse what is not read, or would take too much memory."""
-    kind = int(page.photometric or 0)
+    kind, n_samples = int(page.photometric or 0), page.samplesperpixel
     if kind not in (_BACK_TO_FRONT, _GREY, _RGB) or page.dtype is None or page.imagedepth != 1:
         raise ImageError(
             f"unsupported: TIFF samples of {page.bitspersample} bits, format "
             f"{_name(page.sampleformat)}, colours {_name(page.photometric)}"
         )
+    if n_samples > 1 and _BITS_PER_SAMPLE not in page.tags:
+        raise ImageError("the image is damaged: it does not say how many bits its samples have")
     if page.dtype.kind not in "uifb":
         raise ImageError(f"unsupported: TIFF samples of type {page.dtype}")
-    n_samples = page.samplesperpixel
     if n_samples > _MOST_SAMPLES or (kind == _RGB and n_samples < 3):
         raise ImageError(f"unsupported: TIFF pixels of {n_samples} samples")
     sides = (page.tilewidth, page.tilelength) if page.is_tiled else _strip_size(page)
@@ -257,45 +260,75 @@ def _read_values(
     if page.dtype.kind == "u" and not page.extrasamples:
         values[:] = 1 << (int(page.bitspersample) - 1)  # grey
     n_segments = prod(page.chunked)
-    n_read = 0
+    share = 0.0
     for index in range(n_segments):
         segment = _read_segment(data, page, index, allow_missing=allow_missing)
-        if segment is None:
-            continue
-        pixels, (plane, _, row, column, _) = segment
-        n_rows, n_columns = min(len(pixels), height - row), min(pixels.shape[1], width - column)
+        pixels, (plane, _, row, column, _) = segment.pixels, segment.place
+        n_rows, n_columns = min(segment.n_rows, height - row), min(pixels.shape[1], width - column)
         place = values[row : row + n_rows, column : column + n_columns]
         if page.planarconfig == 1:
             place[:] = pixels[:n_rows, :n_columns]
         else:
             place[:, :, plane] = pixels[:n_rows, :n_columns, 0]
-        n_read += 1
-    return values, n_read / n_segments
+        share += segment.n_rows / len(pixels) / n_segments
+    return values, min(1.0, round(share, 6))
 
 
-def _read_segment(
-    data: bytes, page: TiffPage, index: int, *, allow_missing: bool
-) -> tuple[npt.NDArray[Any], tuple[int, ...]] | None:
-    """Pixels of a strip or tile, shape (rows, columns, c), and its place; None if it is missing."""
+class _Segment(NamedTuple):
+    """A strip or tile: pixels of shape (rows, columns, c), their place, and the rows there are."""
+
+    pixels: npt.NDArray[Any]
+    place: tuple[int, ...]
+    n_rows: int
+
+
+def _read_segment(data: bytes, page: TiffPage, index: int, *, allow_missing: bool) -> _Segment:
+    """Pixels of a strip or tile; of one that is missing, none."""
     tables: dict[str, Any] = {}
-    if int(page.compression) in (6, 7, 34892, 33007):
+    if int(page.compression) in _JPEG:
         tables = {"jpegtables": page.jpegtables, "jpegheader": page.jpegheader}
-    is_there = index < len(page.dataoffsets) and index < len(page.databytecounts)
-    start, count = (page.dataoffsets[index], page.databytecounts[index]) if is_there else (0, 0)
+    is_listed = index < min(len(page.dataoffsets), len(page.databytecounts))
+    start, count = (page.dataoffsets[index], page.databytecounts[index]) if is_listed else (0, 0)
     piece = data[start : start + count]
+    _, place, shape = page.decode(None, index)
+    n_rows = shape[1]
+    if is_listed and count == 0:  # a file may leave out what is all empty
+        return _Segment(np.zeros(shape[1:], dtype=page.dtype), place, n_rows)
     try:
-        if is_there and len(piece) < count and not allow_missing:
-            raise EOFError("the file ends before its samples do")
-        if not piece:
-            return None
+        if len(piece) < max(1, count):
+            if not allow_missing:
+                raise EOFError("the file ends before its samples do")
+            piece, n_rows = _completed(piece, page, shape[1:])
         pixels, place, _ = page.decode(piece, index, **tables)
     except MemoryError:
         raise
     except Exception as error:
         if allow_missing:
-            return None
+            return _Segment(np.zeros(shape[1:], dtype=page.dtype), place, 0)
         raise ImageError(f"the image is damaged: {error}") from None
-    return None if pixels is None else (pixels[0], place)
+    if pixels is None:
+        raise ImageError("the image is damaged: a strip or tile of it is empty")
+    return _Segment(pixels[0], place, n_rows)
+
+
+def _completed(piece: bytes, page: TiffPage, shape: tuple[int, ...]) -> tuple[bytes, int]:
+    """The start of a strip or tile with zeros behind it, coded as it was, and its whole rows."""
+    import imagecodecs
+
+    n_bytes = -(-shape[1] * shape[2] * int(page.bitspersample) // 8)
+    codecs: dict[int, tuple[Callable[[bytes], Any], Callable[[bytes], Any]]] = {
+        _NO_COMPRESSION: (bytes, bytes),
+        _LZW: (imagecodecs.lzw_decode, imagecodecs.lzw_encode),
+        _PACKBITS: (imagecodecs.packbits_decode, imagecodecs.packbits_encode),
+        **dict.fromkeys(_DEFLATE, (_inflate_start, zlib.compress)),
+    }
+    decode, encode = codecs[int(page.compression)]
+    start = bytes(decode(piece))[: shape[0] * n_bytes]
+    return bytes(encode(start.ljust(shape[0] * n_bytes, b"\0"))), len(start) // n_bytes
+
+
+def _inflate_start(piece: bytes) -> bytes:
+    return zlib.decompressobj().decompress(piece)
 
 
 def _colors_of(values: npt.NDArray[Any], page: TiffPage) -> tuple[SampleArray, tuple[str, ...]]:

@@ -23,7 +23,7 @@ _MOST_MISSING: Final = 1 << 26  # that a header makes us believe in
 _SLACK: Final = 1 << 16
 _MOST_BYTES: Final = 4  # of a pixel, in whatever format
 _N_NOISES: Final = 2
-_GREY: Final = 128
+_GREYS: Final = {"L": 128, "RGB": 128, "I": 32_768, "I;16": 32_768, "F": 0.5}
 
 Decode = Callable[[bytes], Image.Image]
 
@@ -59,8 +59,13 @@ def how_much(share: float | None, *, is_coarse: bool = False) -> str:
     return f"about {percent} % of its picture is there"
 
 
+NOTHING: Final = "the file is cut off: nothing of its picture is there"
+
+
 def refusal(share: float | None, *, is_coarse: bool = False) -> str:
     """Words that refuse a file that was cut off."""
+    if share == 0:
+        return NOTHING
     return (
         f"the file is cut off: {how_much(share, is_coarse=is_coarse)}; "
         "--allow-truncated reads it as it is"
@@ -83,6 +88,8 @@ def read_partly(data: bytes, decode: Decode) -> Partial | None:
     decode : callable
         Opens and loads an image.
     """
+    if is_jpeg(data):
+        data = data.rstrip(b"\xff")  # half a marker
     with _tolerance():
         try:
             image = decode(data)
@@ -100,23 +107,30 @@ def read_partly(data: bytes, decode: Decode) -> Partial | None:
                 raise
             except Exception:  # of whatever kind: it needs all of the file
                 return None
-        agreement = _agreement(data, image, decode)
-    low, high = image.convert("L").getextrema()
-    if agreement.all() and low == high and not is_jpeg(data):
-        return Partial(image, 0.0)  # the decoder left all as it was
-    share = float(agreement.mean())
+        is_there, n_read = _agreement(data, image, decode)
     if is_jpeg(data):
         # libjpeg fills up by itself, and what is refined halfway is there all the same.
+        share = float(is_there.all(axis=1).mean())
         if share == 1:
             return Partial(image, 1.0, is_coarse=not has_all_scans(data))
         return Partial(image, share, is_coarse=has_first_scan(data))
-    # Where noise changes nothing, the decoder took none of it.
-    return Partial(_greyed(image, ~agreement), share if share < 1 else None)
+    if not is_there.all():
+        return Partial(_greyed(image, ~is_there), float(is_there.mean()))
+    if _n_missing(data):
+        return Partial(image, 1.0 if n_read else None)
+    # Noise that changes nothing was not read: the decoder stopped before, or read nothing at all.
+    low, high = image.convert("L").getextrema()
+    return Partial(image, 0.0 if low == high else None)
 
 
 def ends_early(error: Exception) -> bool:
     """True of errors by which Pillow's decoders say that a file ends too early."""
     return isinstance(error, EOFError) or "truncated" in str(error).lower()
+
+
+def is_cut_in_riff(data: bytes) -> bool:
+    """True if a RIFF file, as WebP is, ends before its own header says."""
+    return _n_missing(data) > 0
 
 
 def is_cut_in_boxes(data: bytes) -> bool:
@@ -146,11 +160,16 @@ def _tolerance() -> Iterator[None]:
             ImageFile.LOAD_TRUNCATED_IMAGES = before
 
 
-def _agreement(data: bytes, image: Image.Image, decode: Decode) -> BoolArray:
-    """Where an image stays the same if noise follows its data, shape (h, w)."""
+def _agreement(data: bytes, image: Image.Image, decode: Decode) -> tuple[BoolArray, int]:
+    """Pixels that stay the same if noise follows the data, shape (h, w), and how often it was read.
+
+    Decoders that noise brings to a stop leave the rest as it was: it is missing too.
+    """
     n_bytes = 1 if is_jpeg(data) else _MOST_BYTES
     n_noise = max(_n_missing(data), n_bytes * image.width * image.height + _SLACK)
-    is_same = np.ones((image.height, image.width), dtype=bool)
+    pixels = np.asarray(image)
+    is_there = np.ones(pixels.shape[:2], dtype=bool)
+    n_read = 0
     for seed in range(_N_NOISES):
         # Without 255, which begins the markers of JPEG.
         noise = np.random.default_rng(seed).integers(1, 255, n_noise, dtype=np.uint8)
@@ -161,20 +180,33 @@ def _agreement(data: bytes, image: Image.Image, decode: Decode) -> BoolArray:
         except Exception:  # of whatever kind: this noise says nothing
             continue
         if other.size == image.size and other.mode == image.mode:
-            equal = np.asarray(image) == np.asarray(other)
-            is_same &= equal if equal.ndim == 2 else equal.all(axis=2)
-    return is_same
+            is_equal = pixels == np.asarray(other)
+            is_there &= is_equal if is_equal.ndim == 2 else is_equal.all(axis=2)
+            n_read += 1
+    rows = np.flatnonzero(~is_there.all(axis=1))
+    if len(rows):
+        first, last = rows[0], rows[-1]
+        if is_jpeg(data) or (last + 1 < len(pixels) and not pixels[last + 1 :].any()):
+            is_there[first + 1 :] = False
+        elif first > 0 and not pixels[:first].any():  # from the bottom up
+            is_there[:last] = False
+    return is_there, n_read
 
 
 def _greyed(image: Image.Image, is_missing: BoolArray) -> Image.Image:
-    """An image with some pixels in grey, or transparent where there is alpha."""
-    if not is_missing.any():
-        return image
+    """An image with some pixels in grey, or transparent where there is alpha.
+
+    Rows missing between others, as of an interlaced GIF, are as the one above.
+    """
     info = image.info
-    if image.mode not in ("L", "RGB", "RGBA"):
+    if image.mode not in _GREYS and image.mode != "RGBA":
         image = image.convert("RGBA" if image.has_transparency_data else "RGB")
     pixels = np.array(image)
-    pixels[is_missing] = 0 if image.mode == "RGBA" else _GREY
+    pixels[is_missing] = _GREYS.get(image.mode, 0)
+    there = np.flatnonzero(~is_missing.any(axis=1))
+    if len(there):
+        between = np.arange(there[0], there[-1] + 1)
+        pixels[between] = pixels[there[np.searchsorted(there, between, side="right") - 1]]
     greyed = Image.fromarray(pixels)
     greyed.info = info
     return greyed
