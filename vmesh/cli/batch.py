@@ -13,9 +13,10 @@ from typing import Any
 import click
 
 from vmesh.batch.cluster import run_on_cluster
+from vmesh.batch.passed_over import describe_passed_over
 from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
-from vmesh.batch.sources import find_sources
+from vmesh.batch.sources import Source, find_sources
 from vmesh.batch.task import Outcome, Recipe
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
@@ -123,7 +124,13 @@ def command(
             raise click.UsageError("-j is for this machine, --scheduler for others")
         # The workers run in other folders.
         sources, output = tuple(map(absolute, sources)), absolute(output)
-    found = find_sources(sources, output)
+    try:
+        found = find_sources(sources, output)
+    except ValueError:
+        tell_passed_over(sources, output, [])
+        raise
+    if not quiet:
+        tell_passed_over(sources, output, found)
     tasks, skipped = make_plan(found, output, suffixes, recipe, force=force)
     make_folder(output)
     if scheduler is None:
@@ -138,6 +145,13 @@ def command(
 def absolute(path: str) -> str:
     """The path from the root."""
     return str(Path(path).absolute())
+
+
+def tell_passed_over(arguments: tuple[str, ...], output: str, sources: list[Source]) -> None:
+    """Tell on standard error which files in folders are passed over, in a line."""
+    words = describe_passed_over(arguments, output, sources)
+    if words is not None:
+        click.echo(f"vmesh: {words}", err=True)
 
 
 def make_folder(path: str) -> None:

@@ -73,15 +73,14 @@ def _decode_png(data: bytes, options: PictureOptions, limits: Limits) -> Decoded
         raise
     except Exception as error:
         # Decoders of damaged images raise errors of many kinds.
-        mended, n_rows, share = png.mended()
-        share = share if any(n_rows) else 0.0
+        counts, share = png.count_rows()
+        if share < 1 and png.is_whole and not options.allow_truncated:
+            raise ImageError(f"the image is damaged: {error}") from None
         if share == 0 or (share < 1 and not options.allow_truncated):
-            if png.is_whole:
-                raise ImageError(f"the image is damaged: {error}") from None
             raise ImageError(truncation.refusal(share)) from None
-        samples, _ = _pixels_of_png(mended, PictureOptions(), limits)
-        if mended.header.interlacing:
-            samples = fill_blocks(samples, n_rows)
+        samples, _ = _pixels_of_png(png.mended(counts), PictureOptions(), limits)
+        if png.header.interlacing:
+            samples = fill_blocks(samples, counts)
         notes += (truncation.note(share),) if share < 1 else ()
     samples, more = in_srgb(samples, png.gamma, png.chromaticities)
     notes += more

@@ -21,6 +21,7 @@ from vmesh.formats.metadata.exif import (
 from vmesh.formats.picture.decoding import Decoded, decode
 from vmesh.formats.picture.modes import array_of
 from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
+from vmesh.formats.picture.tiff import STRUCTURE
 from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Metadata
@@ -168,6 +169,8 @@ def _exif_of(image: Image.Image) -> bytes:
     """The EXIF block, with the density that PNG and JFIF have elsewhere; empty if there is none."""
     try:
         exif = image.getexif()
+        for tag in exif.keys() & STRUCTURE:
+            del exif[tag]
         density = image.info.get("dpi", _NO_DENSITIES[0])
         if X_RESOLUTION not in exif and tuple(map(round, density)) not in _NO_DENSITIES:
             exif[X_RESOLUTION], exif[Y_RESOLUTION] = (round(float(value), 2) for value in density)

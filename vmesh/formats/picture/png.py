@@ -139,37 +139,33 @@ class Png:
             raise EOFError("samples are missing")
         return samples
 
-    def mended(self) -> tuple[Png, list[int], float]:
-        """The still picture of a file that was cut off, with what is missing of it.
+    def count_rows(self) -> tuple[list[int], float]:
+        """Rows of each pass that are there, and the share of the samples that is, from 0 to 1."""
+        n_left = n_there = len(self._inflated())
+        counts = []
+        for n_rows, n_bytes in self.header.passes():
+            counts.append(min(n_rows, n_left // n_bytes))
+            n_left -= counts[-1] * n_bytes
+            if counts[-1] < n_rows:
+                n_left = 0
+        return counts, n_there / self.header.n_bytes if any(counts) else 0.0
 
-        Missing rows are grey, or transparent where there is alpha.
+    def mended(self, counts: list[int]) -> Png:
+        """The still picture of a file that was cut off, after so many rows of each pass.
 
-        Returns
-        -------
-        png : Png
-        n_rows : list of int
-            Rows of each pass that are there.
-        share : float
-            Of the samples, from 0 to 1.
+        The others are grey, or transparent where there is alpha.
         """
-        passes = self.header.passes()
-        wanted = self.header.n_bytes
-        there = self._inflated()
-        n_left, n_there = len(there), []
         is_grey = self.header.color_type in (_GREY, _RGB) and self.header.depth >= 8
-        rows: list[bytes] = []
-        for n_rows, n_bytes in passes:
-            n_whole = min(n_rows, n_left // n_bytes)
-            n_left -= n_whole * n_bytes
-            n_left = 0 if n_whole < n_rows else n_left
-            n_there.append(n_whole)
-            missing = b"\0" + (b"\x80" if is_grey else b"\0") * (n_bytes - 1)
-            rows.append(missing * (n_rows - n_whole))
-        kept = sum(n * n_bytes for n, (_, n_bytes) in zip(n_there, passes, strict=True))
+        passes = self.header.passes()
+        n_kept = sum(n * n_bytes for n, (_, n_bytes) in zip(counts, passes, strict=True))
+        missing = (
+            (b"\0" + (b"\x80" if is_grey else b"\0") * (n_bytes - 1)) * (n_rows - n)
+            for n, (n_rows, n_bytes) in zip(counts, passes, strict=True)
+        )
+        filled = zlib.compress(self._inflated()[:n_kept] + b"".join(missing), 1)
         chunks = [c for c in self.chunks if c[0] not in (b"IDAT", b"IEND", *_OF_ANIMATIONS)]
-        filled = zlib.compress(there[:kept] + b"".join(rows), 1)
         chunks += [(b"IDAT", filled), (b"IEND", b"")]
-        return replace(self, chunks=chunks, is_whole=True), n_there, len(there) / max(1, wanted)
+        return replace(self, chunks=chunks, is_whole=True)
 
     def _inflated(self) -> bytes:
         """Filtered samples, as far as they can be inflated."""

@@ -38,6 +38,14 @@ if TYPE_CHECKING:
     from tifffile import TiffFile, TiffPage
 
 _STARTS: Final = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+# Tags that say how samples are stored, or that are kept elsewhere, as the profile is.
+STRUCTURE: Final = frozenset(
+    (
+        *(*range(254, 260), 262, 266, 273, *range(277, 282), 284, 292, 293, 317),
+        *(*range(320, 326), 330, 332, *range(336, 344), 347, *range(512, 522), *range(529, 533)),
+        *(700, 33723, 34377, 34675),
+    )
+)
 _BACK_TO_FRONT, _GREY, _RGB = 0, 1, 2  # kinds of colours, tag PhotometricInterpretation
 _UNSIGNED: Final = (1, 4)  # tag SampleFormat: integers, or not said
 _ASSOCIATED, _UNASSOCIATED = 1, 2  # tag ExtraSamples: alpha
@@ -152,12 +160,15 @@ def carrier_of(data: bytes, index: int) -> Image.Image:
             value = page.tags.valueof(tag)
             if isinstance(value, bytes):
                 carrier.info[name] = value
-        exif = carrier.getexif()
+        exif = Image.Exif()
         exif.endian, exif.bigtiff = file.byteorder, file.is_bigtiff
         try:
             exif.load_from_fp(io.BytesIO(data), page.offset)
+            for tag in exif.keys() & STRUCTURE:
+                del exif[tag]
+            carrier.info["exif"] = exif.tobytes()
         except Exception:  # a block that makes no sense is not worth the picture
-            exif.clear()
+            return carrier
     return carrier
 
 
