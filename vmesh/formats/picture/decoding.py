@@ -120,7 +120,10 @@ def _decode_tiff(data: bytes, options: PictureOptions, limits: Limits) -> Decode
         except (ImageError, EOFError, SyntaxError, ValueError):
             pass  # of a mode that Pillow lacks
         else:
-            return Decoded(_loaded(image), notes=notes)
+            # A copy, which has the metadata that it is given and none of its own.
+            copy = _loaded(image).copy()
+            copy.info.update(carrier_of(data, page.index).info)
+            return Decoded(copy, is_upright=True, notes=notes)
     samples, more, share = read_samples(data, page.index, limits, allow_missing=page.is_cut)
     if page.is_cut:
         if share == 0 or (share < 1 and not options.allow_truncated):
