@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from vmesh.batch.passed_over import describe_passed_over
 from vmesh.batch.sources import PICTURE_SUFFIXES, find_sources
 
 
@@ -107,5 +108,42 @@ def test_a_folder_that_cannot_be_read_is_told(photos: Path) -> None:
         names("photos")
 
 
+@pytest.mark.parametrize(
+    "argument", ["photos [2024]", "photos [2024]/*.png", "photos [2024]/**/*.png", "ph*/*.png"]
+)
+def test_brackets_in_the_name_of_a_folder_are_no_pattern(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, argument: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "photos [2024]").mkdir()
+    (tmp_path / "photos [2024]" / "a.png").touch()
+    assert [path for path, _ in names(argument)] == ["photos [2024]/a.png"]
+
+
+def test_a_pattern_of_brackets_is_a_pattern_where_no_folder_is_called_so(photos: Path) -> None:
+    assert names("photo[s]/[ab].png") == [("photos/b.png", "photos/b.png")]
+
+
+def test_what_is_passed_over_is_counted_and_named(photos: Path) -> None:
+    found = find_sources(["photos"], "out")
+    assert describe_passed_over(["photos"], "out", found) == (
+        "passed over 1 file that is no picture: notes.txt"
+    )
+    for n in range(9):
+        (photos / "sea" / f"film {n}.mov").touch()
+    (photos / "a.vmesh").touch()
+    words = describe_passed_over(["photos", "photos"], "out", found)
+    assert words is not None
+    assert words.startswith("passed over 10 files, no pictures: notes.txt, film 0.mov, ")
+    assert words.endswith(", ...")
+
+
+def test_files_that_are_named_or_match_are_not_passed_over(photos: Path) -> None:
+    found = find_sources(["photos/b.png", "photos/*.JPG"], "out")
+    assert describe_passed_over(["photos/b.png", "photos/*.JPG"], "out", found) is None
+
+
 def test_pillow_reads_all_that_is_taken_from_folders() -> None:
+    pytest.importorskip("pillow_heif").register_heif_opener()
+    pytest.importorskip("pillow_jxl")
     assert set(Image.registered_extensions()) >= PICTURE_SUFFIXES

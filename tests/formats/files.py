@@ -28,7 +28,7 @@ def scene(height: int = 48, width: int = 64) -> np.ndarray:
     return (smooth + np.random.default_rng(1).integers(0, 40, smooth.shape)).astype(np.uint8)
 
 
-def read(data: bytes, limits: Limits = DEFAULT_LIMITS, **options: Any) -> Picture:
+def read(data: bytes | bytearray, limits: Limits = DEFAULT_LIMITS, **options: Any) -> Picture:
     """The picture in the bytes of a file."""
     return read_picture(io.BytesIO(data), options=PictureOptions(**options), limits=limits)
 

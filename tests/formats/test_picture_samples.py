@@ -97,13 +97,13 @@ def test_floats_of_0_to_1_are_what_they_are(dtype: str) -> None:
 
 
 def test_floats_beyond_are_spread_and_told() -> None:
-    picture = read(tiff(np.float32([[-2.0, 0.0, 2.0]]), photometric="minisblack"))
+    picture = read(tiff(np.array([[-2.0, 0.0, 2.0]], dtype="f4"), photometric="minisblack"))
     assert picture.array.tolist() == [[0, 32_768, 65_535]]
     assert "from -2, now black, to 2, now white" in picture.notes[0]
 
 
 def test_samples_that_are_no_numbers_are_black_and_told() -> None:
-    levels = np.float32([[np.nan, np.inf, -np.inf, 0.0, 0.5, 1.0]])
+    levels = np.array([[np.nan, np.inf, -np.inf, 0.0, 0.5, 1.0]], dtype="f4")
     picture = read(tiff(levels, photometric="minisblack"))
     assert picture.array.tolist() == [[0, 65_535, 0, 0, 32_768, 65_535]]
     assert "3 of its samples are no numbers" in picture.notes[0]
@@ -125,7 +125,7 @@ def test_complex_numbers_are_refused_as_unsupported() -> None:
 
 @pytest.mark.parametrize("mode", ["I", "F", "I;16"])
 def test_images_of_numbers_become_grey_of_sixteen_bits(mode: str) -> None:
-    levels = {"I": np.int32, "F": np.float32, "I;16": np.uint16}[mode]([[0, 1000, 65_535]])
+    levels = np.array([[0, 1000, 65_535]], dtype={"I": "i4", "F": "f4", "I;16": "u2"}[mode])
     if mode == "F":
         levels /= 65_535
     picture = picture_of(Image.fromarray(levels))
@@ -134,7 +134,7 @@ def test_images_of_numbers_become_grey_of_sixteen_bits(mode: str) -> None:
 
 
 def test_negative_values_of_an_image_are_not_cut() -> None:
-    picture = picture_of(Image.fromarray(np.int32([[-100, 0, 100]])))
+    picture = picture_of(Image.fromarray(np.array([[-100, 0, 100]], dtype="i4")))
     assert picture.array.tolist() == [[0, 32_768, 65_535]]
     assert picture.notes
 
@@ -152,7 +152,7 @@ def test_saving_through_pillow_gives_the_tones_of_the_file(dtype: str) -> None:
 
 
 def test_multiplied_grey_of_an_image_is_divided() -> None:
-    image = Image.fromarray(np.uint8([[[100, 128]]]), "LA").convert("La")
+    image = Image.fromarray(np.array([[[100, 128]]], dtype="u1"), "LA").convert("La")
     array = picture_of(image).array.astype(int)
     assert np.abs(array - [[[100, 100, 100, 128]]]).max() <= 1
 

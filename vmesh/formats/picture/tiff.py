@@ -51,6 +51,7 @@ _UNSIGNED: Final = (1, 4)  # tag SampleFormat: integers, or not said
 _ASSOCIATED, _UNASSOCIATED = 1, 2  # tag ExtraSamples: alpha
 _REDUCED, _MASK = 1, 4  # bits of the tag NewSubfileType
 _NO_COMPRESSION, _LZW, _PACKBITS, _DEFLATE = 1, 5, 32773, (8, 32946)
+_LONGEST_RUN: Final = 129  # bytes of PackBits
 _JPEG: Final = (6, 7, 34892, 33007)
 _MOST_SAMPLES: Final = 32  # of a pixel
 _MOST_PAGES: Final = 10_000
@@ -330,12 +331,24 @@ def _completed(piece: bytes, page: TiffPage, shape: tuple[int, ...]) -> tuple[by
     codecs: dict[int, tuple[Callable[[bytes], Any], Callable[[bytes], Any]]] = {
         _NO_COMPRESSION: (bytes, bytes),
         _LZW: (imagecodecs.lzw_decode, imagecodecs.lzw_encode),
-        _PACKBITS: (imagecodecs.packbits_decode, imagecodecs.packbits_encode),
+        _PACKBITS: (_unpack_start, imagecodecs.packbits_encode),
         **dict.fromkeys(_DEFLATE, (_inflate_start, zlib.compress)),
     }
     decode, encode = codecs[int(page.compression)]
     start = bytes(decode(piece))[: shape[0] * n_bytes]
     return bytes(encode(start.ljust(shape[0] * n_bytes, b"\0"))), len(start) // n_bytes
+
+
+def _unpack_start(piece: bytes) -> bytes:
+    """What PackBits can be unpacked of a piece, whose last run may be cut off."""
+    import imagecodecs
+
+    for n_left_out in range(min(len(piece), _LONGEST_RUN) + 1):
+        try:
+            return bytes(imagecodecs.packbits_decode(piece[: len(piece) - n_left_out]))
+        except imagecodecs.PackbitsError:
+            continue
+    return b""
 
 
 def _inflate_start(piece: bytes) -> bytes:
