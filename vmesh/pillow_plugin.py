@@ -7,6 +7,7 @@ It stands above `formats` and `encoder`, of which it needs both. Pillow finds no
 from __future__ import annotations
 
 import io
+import warnings
 from dataclasses import fields
 from difflib import get_close_matches
 from math import ceil
@@ -126,7 +127,8 @@ def save(image: Image.Image, stream: IO[bytes], filename: str | bytes) -> None:
 
     The ICC profile, EXIF and XMP are the image's own unless the options ``icc_profile``, ``exif``
     and ``xmp`` give others. The EXIF orientation is applied. Options of other formats are passed
-    over, as plug-ins of Pillow do; one that is nearly a setting's name is taken for a slip.
+    over, as plug-ins of Pillow do; one that is nearly a setting's name is taken for a slip. A
+    warning tells if the samples have no white that is known, and were spread over 16 bits.
 
     Raises
     ------
@@ -138,7 +140,9 @@ def save(image: Image.Image, stream: IO[bytes], filename: str | bytes) -> None:
 
     options = image.encoderinfo
     settings = _settings_of(options)
-    picture = picture_of(_with_metadata(image, options))
+    picture = picture_of(_with_metadata(image, options), opened=image)
+    for note in picture.notes:
+        warnings.warn(f"{FORMAT}: {note}", stacklevel=3)
     stream.write(dumps(encode_with(picture.array, settings, metadata=picture.metadata)))
 
 

@@ -108,4 +108,6 @@ def test_a_folder_that_cannot_be_read_is_told(photos: Path) -> None:
 
 
 def test_pillow_reads_all_that_is_taken_from_folders() -> None:
+    pytest.importorskip("pillow_heif").register_heif_opener()
+    pytest.importorskip("pillow_jxl")
     assert set(Image.registered_extensions()) >= PICTURE_SUFFIXES

@@ -17,6 +17,7 @@ PICTURE_SUFFIXES: Final = frozenset(
     (
         *(".png", ".jpg", ".jpeg", ".jpe", ".jfif", ".webp", ".avif", ".tif", ".tiff", ".gif"),
         *(".bmp", ".ppm", ".pgm", ".pbm", ".pnm", ".jp2", ".j2k", ".jpx", ".tga", ".pcx", ".qoi"),
+        *(".apng", ".heic", ".heif", ".hif", ".jxl"),
     )
 )
 
@@ -119,9 +120,10 @@ def _expand(
         matches, base = [named], named if named.is_dir() else named.parent
     else:
         # Path.glob starts at a folder, and would have the pattern cut in two.
-        matched = sorted(glob.glob(argument, recursive=True))  # noqa: PTH207
-        matches = [Path(match) for match in matched] or [named]
         base = _fixed_part(named)
+        pattern = Path(glob.escape(str(base)), *named.parts[len(base.parts) :])
+        matched = sorted(glob.glob(str(pattern), recursive=True))  # noqa: PTH207
+        matches = [Path(match) for match in matched] or [named]
     for match in matches:
         taken = _files_in(match, output, kind, passed_over) if match.is_dir() else [match]
         for path in taken:
@@ -129,9 +131,13 @@ def _expand(
 
 
 def _fixed_part(pattern: Path) -> Path:
-    """The folders of a pattern before the first wildcard."""
-    n_fixed = next(n for n, part in enumerate(pattern.parts) if glob.has_magic(part))
-    return Path(*pattern.parts[:n_fixed])
+    """The folders of a pattern before the first wildcard; brackets in names of some are none."""
+    fixed = Path()
+    for part in pattern.parts:
+        if glob.has_magic(part) and not os.path.lexists(fixed / part):
+            break
+        fixed /= part
+    return fixed
 
 
 def _files_in(

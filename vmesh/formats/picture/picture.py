@@ -1,8 +1,7 @@
-"""Image files -> pictures: arrays with their metadata, through Pillow."""
+"""Image files -> pictures: arrays with their metadata."""
 
 from __future__ import annotations
 
-import threading
 import warnings
 from dataclasses import dataclass
 from typing import BinaryIO, Final
@@ -11,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageOps
 
 from vmesh.arrays import SampleArray
-from vmesh.errors import ImageError
+from vmesh.errors import ImageError, LimitError
 from vmesh.formats.metadata.exif import (
     EXIF_START,
     INCH,
@@ -19,22 +18,17 @@ from vmesh.formats.metadata.exif import (
     X_RESOLUTION,
     Y_RESOLUTION,
 )
+from vmesh.formats.picture.decoding import Decoded, decode
+from vmesh.formats.picture.modes import array_of
 from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
+from vmesh.formats.picture.tiff import STRUCTURE
 from vmesh.formats.raster.rendering import fits_icc
-from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
+from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Metadata
 
-# Well-kept decoders of what people have; not those that run other programs, as for PostScript.
-_FORMATS: Final = (
-    *("PNG", "JPEG", "MPO", "WEBP", "AVIF", "TIFF", "GIF", "BMP", "PPM", "JPEG2000"),
-    *("TGA", "ICO", "PCX", "QOI", "SGI", "DIB"),
-)
-_OPENING: Final = threading.Lock()  # Pillow's own limit is a global variable
 # Per inch: what programs write where nobody knows. To carry it along takes 53 bytes.
 _NO_DENSITIES: Final = ((72, 72), (96, 96), (0, 0))
-_SIXTEEN_BIT: Final = ("I;16", "I;16L", "I;16B", "I;16N", "I")
-_WITH_ALPHA: Final = ("RGBA", "LA", "La", "PA", "RGBa")
-_OPAQUE: Final = ("RGB", "CMYK", "YCbCr", "LAB", "HSV", "RGBX", "P")
+_ORIENTATION: Final = 274
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +38,7 @@ class Picture:
     Parameters
     ----------
     array : ndarray
-        uint8, shape (h, w), (h, w, 3) or (h, w, 4), upright; or uint16, shape (h, w).
+        uint8 or uint16, shape (h, w), (h, w, 3) or (h, w, 4), upright.
     metadata : Metadata
         ICC profile, EXIF without its orientation, XMP.
     notes : tuple of str
@@ -64,63 +58,91 @@ def read_picture(
 ) -> Picture:
     """The photograph in an open file.
 
-    Its EXIF orientation is applied, alpha and palettes are resolved, and of an animation the first
-    frame is taken. Grey of 16 bits stays what it is; Pillow rounds colours of 16 bits to 8.
+    Its EXIF orientation is applied, alpha and palettes are resolved; of several pages the largest
+    is taken, of an animation the first frame, unless the options say another. Samples of 16 bits in
+    PNG and TIFF stay what they are; those whose white is not known, as floats beyond 0 to 1, are
+    spread over 16 bits from the lowest to the highest.
 
     Raises
     ------
     ImageError
-        If the file is not an image that Pillow can read to its end.
+        If the file is not an image that can be read to its end, or as far as it goes if the options
+        allow that.
     LimitError
         If it has more pixels than `limits` allow.
     """
     with warnings.catch_warnings():
-        # The limits below take the place of Pillow's warning about large pictures.
+        # The limits take the place of Pillow's warning about large pictures.
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
         warnings.simplefilter("ignore", UserWarning)
-        image = _open(stream)
-        limits.check_pixels(*image.size)
-        if not 1 <= min(image.size) <= max(image.size) <= MAX_SIDE:
-            width, height = image.size
-            raise ImageError(
-                f"expected a picture of 1 to {MAX_SIDE} pixels a side, got {width} x {height}"
-            )
         try:
-            image.load()
-            return picture_of(image)
-        except MemoryError:
+            return _picture_of(decode(stream.read(), options, limits), limits)
+        except (ImageError, LimitError, MemoryError):
             raise
         except Exception as error:
             # The decoders of damaged images raise errors of many kinds.
             raise ImageError(f"the image is damaged: {error}") from None
 
 
-def picture_of(image: Image.Image) -> Picture:
+def picture_of(image: Image.Image, *, opened: Image.Image | None = None) -> Picture:
     """Picture of an image of Pillow: its EXIF orientation applied, alpha and palette resolved.
+
+    Parameters
+    ----------
+    image : Image
+        Of any mode whose pixels have colours.
+    opened : Image, optional
+        The image of a file that `image` is a copy of; it tells how integers of 32 bits are meant.
 
     Raises
     ------
-    ValueError
-        If pixels of its mode have no colours, as those of "F".
+    ImageError
+        If pixels of its mode have no colours.
     """
     upright = _upright(image)
-    array = _array_of(upright)
-    return Picture(array, _metadata_of(upright, array))
+    array, notes = array_of(upright, opened=opened or image)
+    return Picture(array, _metadata_of(upright, array), notes)
 
 
-def _open(stream: BinaryIO) -> Image.Image:
-    """The image with its header read; its size is not limited here."""
-    Image.init()
-    formats: list[str] = [name for name in _FORMATS if name in Image.OPEN]
-    with _OPENING:
-        allowed, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
-        try:
-            return Image.open(stream, formats=formats)
-        except Exception:
-            # Plug-ins raise errors of many kinds on damaged headers; none of them says more.
-            raise ImageError("not an image in a format that can be read") from None
-        finally:
-            Image.MAX_IMAGE_PIXELS = allowed
+def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
+    """Picture of what a file held, turned upright, with metadata within the limits."""
+    image = decoded.image
+    if decoded.is_upright:
+        exif = image.getexif()
+        exif.pop(_ORIENTATION, None)
+        image.info["exif"] = exif.tobytes() if len(exif) else b""
+    if decoded.samples is None:
+        picture = picture_of(image)
+    else:
+        array = _turned(decoded.samples, image.getexif().get(_ORIENTATION, 1))
+        picture = Picture(array, _metadata_of(_upright(image), array))
+    metadata, notes = _within(picture.metadata, limits)
+    return Picture(picture.array, metadata, decoded.notes + picture.notes + notes)
+
+
+def _turned(array: SampleArray, orientation: int) -> SampleArray:
+    """Samples turned and mirrored as an EXIF orientation says."""
+    if orientation in (5, 6, 7, 8):
+        array = array.swapaxes(0, 1)
+    if orientation in (2, 3, 6, 7):
+        array = array[:, ::-1]
+    if orientation in (3, 4, 7, 8):
+        array = array[::-1]
+    return np.ascontiguousarray(array)
+
+
+def _within(metadata: Metadata, limits: Limits) -> tuple[Metadata, tuple[str, ...]]:
+    """Metadata without their longest blocks where all together are over the limit."""
+    blocks = [("ICC", metadata.icc), ("EXIF", metadata.exif), ("XMP", metadata.xmp)]
+    blocks.sort(key=lambda block: len(block[1]))
+    left_out = []
+    while sum(len(content) for _, content in blocks) > limits.max_metadata:
+        left_out.append(blocks.pop())
+    kept = dict(blocks)
+    return (
+        Metadata(icc=kept.get("ICC", b""), exif=kept.get("EXIF", b""), xmp=kept.get("XMP", b"")),
+        tuple(f"its {name} of {len(content)} bytes was left out" for name, content in left_out),
+    )
 
 
 def _upright(image: Image.Image) -> Image.Image:
@@ -129,19 +151,6 @@ def _upright(image: Image.Image) -> Image.Image:
         return ImageOps.exif_transpose(image)
     except Exception:
         return image
-
-
-def _array_of(image: Image.Image) -> SampleArray:
-    """Pixels of an image of any mode, shape (h, w), (h, w, 3) or (h, w, 4)."""
-    if image.mode in _SIXTEEN_BIT:
-        return np.clip(np.asarray(image).astype(np.int64), 0, 65535).astype(np.uint16)
-    if image.mode in _WITH_ALPHA or "transparency" in image.info:
-        return np.asarray(image.convert("RGBA"))
-    if image.mode in ("1", "L"):
-        return np.asarray(image.convert("L"))
-    if image.mode in _OPAQUE:
-        return np.asarray(image.convert("RGB"))
-    raise ValueError(f"pixels of type {image.mode} are not supported")
 
 
 def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
@@ -160,6 +169,8 @@ def _exif_of(image: Image.Image) -> bytes:
     """The EXIF block, with the density that PNG and JFIF have elsewhere; empty if there is none."""
     try:
         exif = image.getexif()
+        for tag in exif.keys() & STRUCTURE:
+            del exif[tag]
         density = image.info.get("dpi", _NO_DENSITIES[0])
         if X_RESOLUTION not in exif and tuple(map(round, density)) not in _NO_DENSITIES:
             exif[X_RESOLUTION], exif[Y_RESOLUTION] = (round(float(value), 2) for value in density)
