@@ -117,7 +117,7 @@ def command(
         tolerance=tolerance,
         merge=merge,
         seams=seams,
-        fit=None if fit is None else read_photograph(fit, reading, limits).array,
+        fit_to=None if fit is None else read_photograph(fit, reading, limits),
         width=width,
         height=height,
     )

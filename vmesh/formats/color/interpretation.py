@@ -33,7 +33,7 @@ import numpy as np
 
 from vmesh.arrays import SampleArray
 from vmesh.codec.profile_name import profile_name
-from vmesh.formats.color.conversion import is_usable, transform
+from vmesh.formats.color.conversion import is_srgb, is_usable, to_srgb, transform
 from vmesh.formats.color.profiles import CMYK, GREY, RGB, grey_profile, rgb_profile, space_of
 
 _NAMES: Final = {GREY: "grey", RGB: "RGB", CMYK: "CMYK"}
@@ -67,6 +67,10 @@ class Interpretation:
     array: SampleArray
     icc: bytes = b""
     notes: tuple[str, ...] = ()
+
+    def in_srgb(self) -> Interpretation:
+        """Interpretation with its colours in sRGB, and without a profile."""
+        return Interpretation(to_srgb(self.array, self.icc), b"", self.notes)
 
 
 def interpret(
@@ -180,7 +184,10 @@ def _by_numbers(
 def _toned(array: SampleArray, profile: bytes) -> Interpretation:
     """Grey, with alpha or without, whose profile cannot stay, in sRGB."""
     for_what = "RGB, not for grey" if space_of(profile) == RGB else "grey without alpha"
-    note = f"{_called(profile)} is for {for_what}: the tones were converted to sRGB"
+    said = f"{_called(profile)} is for {for_what}: "
+    if is_srgb(profile):
+        return Interpretation(array, b"", (f"{said}it is left out, which changes no colour",))
+    note = f"{said}the tones were converted to sRGB"
     return Interpretation(_with_table(array, _table(profile, array)), b"", (note,))
 
 
