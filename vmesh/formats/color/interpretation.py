@@ -78,7 +78,6 @@ def interpret(
     profile: bytes,
     info: Mapping[str, Any] | None = None,
     *,
-    is_grey: bool | None = None,
     is_adobe_rgb: bool = False,
 ) -> Interpretation:
     """Interpretation of grey or RGB samples by an embedded profile, or by what PNG and EXIF say.
@@ -91,33 +90,26 @@ def interpret(
         As the file has it, empty if it has none.
     info : mapping, optional
         What Pillow tells of the file: "srgb", "gamma" and "chromaticity" are used.
-    is_grey : bool, optional
-        True of grey with alpha, whose array is RGBA; by its shape unless given.
     is_adobe_rgb : bool
         True if the EXIF block names that space, as cameras do instead of embedding a profile.
     """
-    if is_grey is None:
-        is_grey = array.ndim == 2
     notes: tuple[str, ...] = ()
     if profile:
-        space = space_of(profile)
-        if not is_usable(profile):
-            notes = (
-                f"{_called(profile)} is damaged or of a kind that is not read: it is left out",
-            )
-        elif (not is_grey and space == RGB) or (space == GREY and array.ndim == 2):
-            return Interpretation(array, profile)
-        elif is_grey and space in (GREY, RGB):
-            return _toned(array, profile)
-        else:
+        if is_usable(profile):
+            space, is_grey = space_of(profile), array.ndim == 2
+            if space == (GREY if is_grey else RGB):
+                return Interpretation(array, profile)
+            if space == (RGB if is_grey else GREY) and (is_grey or _is_grey_with_alpha(array)):
+                return _toned(array, profile)
             wanted = "grey" if is_grey else "RGB"
-            notes = (
-                f"{_called(profile)} is for {_NAMES[space]}, not for {wanted}: it is left out",
-            )
-    elif is_adobe_rgb and not is_grey:
+            why = f"is for {_NAMES[space]}, not for {wanted}"
+        else:
+            why = "is damaged or of a kind that is not read"
+        notes = (f"{_called(profile)} {why}: it is left out",)
+    elif is_adobe_rgb and array.ndim == 3:
         added = "its EXIF block says Adobe RGB: a profile of that space was added"
         return Interpretation(array, adobe_rgb(), (added,))
-    return _by_numbers(array, info or {}, notes, is_grey=is_grey)
+    return _by_numbers(array, info or {}, notes)
 
 
 def interpret_inks(inks: SampleArray, profile: bytes, *, is_bare: bool = False) -> Interpretation:
@@ -167,18 +159,23 @@ def _plain_rgb(inks: SampleArray) -> SampleArray:
 
 
 def _by_numbers(
-    array: SampleArray, info: Mapping[str, Any], notes: tuple[str, ...], *, is_grey: bool
+    array: SampleArray, info: Mapping[str, Any], notes: tuple[str, ...]
 ) -> Interpretation:
     """Grey or RGB samples by the gamma and the primaries that PNG gives as numbers."""
     gamma, places = info.get("gamma"), info.get("chromaticity", ())
     if "srgb" in info or not isinstance(gamma, float) or not 1 / _MOST <= gamma <= _MOST:
         return Interpretation(array, b"", notes)
-    if not is_grey and len(places) == 8 and not np.allclose(places, _SRGB, atol=_SAME_PLACE):
+    if array.ndim == 3 and len(places) == 8 and not np.allclose(places, _SRGB, atol=_SAME_PLACE):
         made = rgb_profile(places, 1 / gamma)
         return Interpretation(array, made if is_usable(made) else b"", notes)
     if abs(gamma / _SRGB_GAMMA - 1) < _SAME_GAMMA:
         return Interpretation(array, b"", notes)
     return Interpretation(_with_table(array, _table(grey_profile(1 / gamma), array)), b"", notes)
+
+
+def _is_grey_with_alpha(array: SampleArray) -> bool:
+    """True of RGBA that came of grey."""
+    return bool(array.shape[2] == 4 and (array[:, :, :2] == array[:, :, 1:3]).all())
 
 
 def _toned(array: SampleArray, profile: bytes) -> Interpretation:

@@ -44,9 +44,15 @@ def read_exif(block: bytes) -> dict[int, Any]:
         return {}
 
 
-def names_adobe_rgb(exif: Image.Exif) -> bool:
-    """True if an EXIF block says that colours are in Adobe RGB, as cameras do without a profile."""
+def names_adobe_rgb(image: Image.Image) -> bool:
+    """True if an image's EXIF block says that its colours are in Adobe RGB.
+
+    Cameras say so instead of embedding a profile.
+    """
     try:
-        return str(exif.get_ifd(INTEROPERABILITY).get(_SPACE, "")).strip("\0 ") == _ADOBE_RGB
+        return (
+            str(image.getexif().get_ifd(INTEROPERABILITY).get(_SPACE, "")).strip("\0 ")
+            == _ADOBE_RGB
+        )
     except Exception:  # as above
         return False
