@@ -33,6 +33,7 @@ import numpy as np
 
 from vmesh.arrays import SampleArray
 from vmesh.codec.profile_name import profile_name
+from vmesh.color_lattice import rescale
 from vmesh.formats.color.conversion import is_srgb, is_usable, to_srgb, transform
 from vmesh.formats.color.profiles import CMYK, GREY, RGB, grey_profile, rgb_profile, space_of
 
@@ -190,8 +191,11 @@ def _toned(array: SampleArray, profile: bytes) -> Interpretation:
 
 def _table(profile: bytes, array: SampleArray) -> SampleArray:
     """RGB in sRGB of each level of grey that the array's type has, shape (n, 3)."""
-    levels = np.arange(np.iinfo(array.dtype).max + 1, dtype=array.dtype)[:, None]
-    return transform(levels if space_of(profile) == GREY else np.repeat(levels, 3, 1), profile)
+    n_bits = 8 * array.dtype.itemsize
+    # In 16 bits: in 8 littleCMS is up to two levels off where it is dark.
+    levels = rescale(np.arange(1 << n_bits).astype(array.dtype)[:, None], n_bits, 16)
+    n_components = 1 if space_of(profile) == GREY else 3
+    return rescale(transform(np.repeat(levels, n_components, axis=1), profile), 16, n_bits)
 
 
 def _with_table(array: SampleArray, table: SampleArray) -> SampleArray:
