@@ -77,7 +77,7 @@ class Interpretation:
 def interpret(
     array: SampleArray,
     profile: bytes,
-    info: Mapping[str, Any] | None = None,
+    info: Mapping[Any, Any] | None = None,
     *,
     is_adobe_rgb: bool = False,
 ) -> Interpretation:
@@ -160,7 +160,7 @@ def _plain_rgb(inks: SampleArray) -> SampleArray:
 
 
 def _by_numbers(
-    array: SampleArray, info: Mapping[str, Any], notes: tuple[str, ...]
+    array: SampleArray, info: Mapping[Any, Any], notes: tuple[str, ...]
 ) -> Interpretation:
     """Grey or RGB samples by the gamma and the primaries that PNG gives as numbers."""
     gamma, places = info.get("gamma"), info.get("chromaticity", ())
