@@ -11,7 +11,7 @@ from PIL import Image, UnidentifiedImageError
 import vmesh
 from tests.pictures import PICTURES, psnr
 from vmesh.arrays import UInt8Array
-from vmesh.formats.metadata.profiles import srgb_profile
+from vmesh.formats.color.profiles import srgb_profile
 from vmesh.mesh import Metadata
 from vmesh.pillow_plugin import VmeshImageFile
 

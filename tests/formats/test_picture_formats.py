@@ -11,7 +11,7 @@ from PIL import Image
 
 import vmesh
 from tests.formats.files import read, saved, scene, tiff
-from vmesh.formats.metadata.profiles import srgb_profile
+from vmesh.formats.color.profiles import srgb_profile
 from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.picture.picture import read_picture
 

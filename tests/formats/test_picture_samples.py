@@ -170,7 +170,7 @@ def test_portable_maps_of_any_largest_value_reach_white(largest: int) -> None:
 
 
 def test_an_oriented_deep_tiff_is_turned_and_keeps_its_metadata() -> None:
-    from vmesh.formats.metadata.profiles import srgb_profile
+    from vmesh.formats.color.profiles import srgb_profile
 
     data = tiff(
         DEEP,

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 def command(first: str, second: str, as_json: bool, **options: Any) -> None:
     """Print PSNR over RGB and over luma, and SSIM, of two pictures or .vmesh files.
 
+    Both are compared in sRGB, into which colours are converted that have another ICC profile.
     B is brought to the size of A: a mesh by drawing it at that size, a picture by bicubic
     resampling. What is transparent counts as white.
     """
@@ -52,14 +53,17 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
 def _pixels(
     path: str, reading: PictureOptions, limits: Limits, size: tuple[int, int] | None
 ) -> UInt8Array:
-    """Pixels of a picture or mesh, shape (h, w, 3), at a size or at its own."""
+    """Pixels of a picture or mesh in sRGB, shape (h, w, 3), at a size or at its own."""
+    from vmesh.formats.color.conversion import to_srgb
     from vmesh.formats.picture.conversion import flatten, resize
     from vmesh.formats.raster.rendering import render
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(path, reading, limits)
+    profile = given.metadata.icc
     if isinstance(given, Mesh):
         width, height = size or (given.width, given.height)
-        return flatten(render(given, limits=limits, width=width, height=height), given.depth)
-    pixels = flatten(given.array)
+        raster = render(given, limits=limits, width=width, height=height)
+        return flatten(to_srgb(raster, profile, given.depth), given.depth)
+    pixels = flatten(to_srgb(given.array, profile))
     return pixels if size is None else resize(pixels, size)

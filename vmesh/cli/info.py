@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 import click
 
@@ -13,6 +13,8 @@ from vmesh.cli.streams import read_input, tell
 from vmesh.codec.summary import describe
 from vmesh.errors import FormatError, LimitError, shown
 from vmesh.limits import Limits
+
+_METADATA: Final = {"exif": "EXIF", "xmp": "XMP"}
 
 
 @click.command("info")
@@ -65,6 +67,7 @@ def _table(figures: dict[str, Any]) -> str:
         f"on 1/{1 << figures['subdivision']} pixel, {figures['connectivity']} {triangles}",
         f"colour steps {', '.join(map(str, figures['color_steps']))}",
         *_tiles(figures["tiles"]),
+        *_metadata(figures),
         f"{figures['bytes']} bytes, {figures['bits_per_vertex']:.2f} bits per vertex",
         "",
         "part           bytes  bits per vertex",
@@ -81,3 +84,10 @@ def _tiles(tiles: dict[str, int] | None) -> list[str]:
     if tiles is None:
         return []
     return [f"{tiles['columns']} x {tiles['rows']} tiles of {tiles['side']} pixels"]
+
+
+def _metadata(figures: dict[str, Any]) -> list[str]:
+    """The lines about the colours' space, and about further metadata, if there are any."""
+    others = [_METADATA.get(name, f"chunk {name}") for name in figures["metadata"] if name != "icc"]
+    lines = [] if figures["profile"] is None else [f"ICC profile {figures['profile']}"]
+    return [*lines, f"metadata {', '.join(others)}"] if others else lines

@@ -103,7 +103,7 @@ def command(
         n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-    pixels = None if fit is None else read_photograph(fit, reading, limits).array
+    photograph = None if fit is None else read_photograph(fit, reading, limits)
 
     def work(job: Job) -> None:
         convert(
@@ -119,7 +119,7 @@ def command(
             tolerance=tolerance,
             merge=merge,
             seams=seams,
-            fit=pixels,
+            fit_to=photograph,
             width=width,
             height=height,
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from vmesh.cli.jobs import Job
 from vmesh.cli.progress import show_progress
@@ -11,6 +11,9 @@ from vmesh.encoder.settings import Settings
 from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.registry import ExportOptions, Format, write_mesh
 from vmesh.limits import Limits
+
+if TYPE_CHECKING:
+    from vmesh.formats.picture.picture import Picture
 
 
 def convert(
@@ -22,14 +25,16 @@ def convert(
     *,
     quiet: bool,
     n_stages: int = 0,
+    fit_to: Picture | None = None,
     **options: Unpack[ExportOptions],
 ) -> None:
     """Write a .vmesh file, or a photograph encoded on the way, in a vector format.
 
-    `n_stages` is how many the writer reports; 0 for one that reports none. Options are those of
-    the format.
+    `n_stages` is how many the writer reports; 0 for one that reports none. `fit_to`
+    is a photograph, in whatever space, for the option `fit`. Other options are those of the format.
     """
     from vmesh.encoder.pipeline import count_steps, encode_with
+    from vmesh.formats.color.conversion import mesh_in_srgb, to_srgb
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(job.source, reading, limits)
@@ -39,6 +44,9 @@ def convert(
             mesh = given
         else:
             mesh = encode_with(given.array, settings, metadata=given.metadata, progress=report)
+        if fit_to is not None:
+            mesh = mesh_in_srgb(mesh)
+            options["fit"] = to_srgb(fit_to.array, fit_to.metadata.icc)
         report("writing")
         if n_stages:
             options["progress"] = report

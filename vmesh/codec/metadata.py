@@ -36,7 +36,7 @@ def read_metadata(chunks: list[Chunk], limits: Limits, policy: Policy) -> Metada
     for chunk in chunks:
         if chunk.tag in names:
             try:
-                known[names[chunk.tag]] = block = _inflate(chunk, limits)
+                known[names[chunk.tag]] = block = inflate(chunk, limits)
             except FormatError as error:
                 policy.complain(error)
                 continue
@@ -48,7 +48,7 @@ def read_metadata(chunks: list[Chunk], limits: Limits, policy: Policy) -> Metada
     return Metadata(**known, unknown=tuple(unknown))
 
 
-def _inflate(chunk: Chunk, limits: Limits) -> bytes:
+def inflate(chunk: Chunk, limits: Limits) -> bytes:
     """Content of a known metadata chunk, inflated to no more than the limit."""
     inflater = zlib.decompressobj()
     try:

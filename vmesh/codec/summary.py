@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, Final
 
 from vmesh.codec import layout
 from vmesh.codec.container import read_file
+from vmesh.codec.layout import Chunk
+from vmesh.codec.metadata import inflate
 from vmesh.codec.policy import Strict
+from vmesh.codec.profile_name import profile_name
+from vmesh.errors import FormatError, LimitError
 from vmesh.limits import Limits
+
+_UNNAMED: Final = "unnamed"
 
 
 def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
@@ -42,6 +49,8 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
         (layout.CHUNK_NAMES.get(chunk.tag, chunk.tag.decode()), len(chunk.content))
         for chunk in container.ancillary
     ]
+    figures["profile"] = _profile_of(container.ancillary, limits)
+    figures["metadata"] = [name for name, _ in ancillary]
     coded = [("mesh", sum(len(chunk.content) for _, chunk in container.found))]
     if by_parts:
         from vmesh.codec.reader import read
@@ -60,3 +69,14 @@ def describe(data: bytes, by_parts: bool, limits: Limits) -> dict[str, Any]:
         for name, size in parts
     ]
     return figures
+
+
+def _profile_of(chunks: Iterable[Chunk], limits: Limits) -> str | None:
+    """Name of the ICC profile among the chunks of a file, none if there is no profile."""
+    for chunk in chunks:
+        if chunk.tag == layout.METADATA_TAGS["icc"]:
+            try:
+                return profile_name(inflate(chunk, limits)) or _UNNAMED
+            except (FormatError, LimitError):  # the figures of the mesh are as good as ever
+                return _UNNAMED
+    return None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 from typing import Final
 
+from vmesh.formats.color.conversion import mesh_in_srgb
+from vmesh.formats.metadata.privacy import stripped
 from vmesh.formats.raster.rendering import render, write_raster
 from vmesh.formats.svg.document import write_svg
 from vmesh.mesh import Mesh
@@ -17,12 +19,15 @@ _MOST_TRIANGLES: Final = 1000
 
 
 def png_preview(mesh: Mesh) -> bytes:
-    """The picture as PNG, at its own size or, if that is large, with sides of at most 1,024."""
+    """The picture as PNG, at its own size or, if that is large, with sides of at most 1,024.
+
+    Of the metadata only the profile is in it: notebooks are passed on.
+    """
     shrink = max(mesh.width, mesh.height) / _LONGEST_SIDE
     scale, samples = (None, 1) if shrink <= 1 else (1 / shrink, min(_MOST_SAMPLES, int(shrink) + 1))
     stream = io.BytesIO()
     pixels = render(mesh, scale=scale, supersample=samples)
-    write_raster(pixels, stream, "PNG", metadata=mesh.metadata, depth=mesh.depth)
+    write_raster(pixels, stream, "PNG", metadata=stripped(mesh.metadata, "all"), depth=mesh.depth)
     return stream.getvalue()
 
 
@@ -31,5 +36,5 @@ def svg_preview(mesh: Mesh) -> str | None:
     if mesh.n_triangles > _MOST_TRIANGLES:
         return None
     stream = io.BytesIO()
-    write_svg(mesh, stream)
+    write_svg(mesh_in_srgb(mesh), stream)
     return stream.getvalue().decode()

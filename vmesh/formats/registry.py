@@ -10,6 +10,8 @@ from inspect import Parameter, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final, TypedDict, Unpack
 
+import numpy as np
+
 from vmesh.files import atomic_output
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh
@@ -62,6 +64,9 @@ class Format:
         True if what is written is compressed as a whole, by gzip.
     is_public : bool
         True of a document that is made to be shown: without private metadata unless asked for.
+    has_profile : bool
+        True of a format that says which space its colours belong to, or whose writer sees to it;
+        others get sRGB.
     """
 
     name: str
@@ -70,6 +75,7 @@ class Format:
     is_raster: bool = False
     is_compressed: bool = False
     is_public: bool = False
+    has_profile: bool = True
 
     def writer(self) -> Writer:
         """Writer of the format, imported when it is asked for."""
@@ -84,17 +90,26 @@ FORMATS: Final = {
     ".webp": Format("WEBP", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
     ".tif": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
     ".tiff": Format("TIFF", "vmesh.formats.raster.rendering", "write_raster", is_raster=True),
-    ".pam": Format("PAM", "vmesh.formats.raster.pam", "write_pam", is_raster=True),
-    ".svg": Format("SVG", "vmesh.formats.svg.document", "write_svg", is_public=True),
+    ".pam": Format(
+        "PAM", "vmesh.formats.raster.pam", "write_pam", is_raster=True, has_profile=False
+    ),
+    ".svg": Format(
+        "SVG", "vmesh.formats.svg.document", "write_svg", is_public=True, has_profile=False
+    ),
     ".svgz": Format(
-        "SVG", "vmesh.formats.svg.document", "write_svg", is_compressed=True, is_public=True
+        "SVG",
+        "vmesh.formats.svg.document",
+        "write_svg",
+        is_compressed=True,
+        is_public=True,
+        has_profile=False,
     ),
     ".pdf": Format("PDF", "vmesh.formats.pdf.document", "write_pdf", is_public=True),
     ".html": Format("HTML", "vmesh.formats.html.document", "write_html", is_public=True),
     ".htm": Format("HTML", "vmesh.formats.html.document", "write_html", is_public=True),
-    ".ply": Format("PLY", "vmesh.formats.models.mesh_files", "write_ply"),
-    ".obj": Format("OBJ", "vmesh.formats.models.mesh_files", "write_obj"),
-    ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb"),
+    ".ply": Format("PLY", "vmesh.formats.models.mesh_files", "write_ply", has_profile=False),
+    ".obj": Format("OBJ", "vmesh.formats.models.mesh_files", "write_obj", has_profile=False),
+    ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb", has_profile=False),
     ".txt": Format("text", "vmesh.codec.text", "write_text"),
 }
 
@@ -139,9 +154,19 @@ def write_mesh(
 
         _check_options(target.name, render, asked)
         raster = render(mesh, limits=limits, **asked)
+        if mesh.metadata.icc and not target.has_profile:
+            from vmesh.formats.color.conversion import to_srgb
+
+            raster = to_srgb(raster, mesh.metadata.icc, mesh.depth)
         write(raster, stream, target.name, metadata=mesh.metadata, depth=mesh.depth)
         return
     _check_options(target.name, write, asked)
+    if mesh.metadata.icc and not target.has_profile:
+        from vmesh.formats.color.conversion import mesh_in_srgb, to_srgb
+
+        if asked.get("fit") is not None:
+            asked["fit"] = to_srgb(np.asarray(asked["fit"]), mesh.metadata.icc)
+        mesh = mesh_in_srgb(mesh)
     if target.is_compressed:
         from vmesh.formats.svg.document import gzipped
 
@@ -175,7 +200,9 @@ def export(
 
     PNG, JPEG, WebP, TIFF and PAM; SVG, PDF and HTML; PLY, OBJ, glTF (``.glb``) and the canonical
     text (``.txt``). In PLY, OBJ and glTF a pixel is a unit, y points up, triangles are
-    counter-clockwise, z is 0, and colours have 8 bits.
+    counter-clockwise, z is 0, and colours have 8 bits. PNG, JPEG, WebP, TIFF and PDF carry the
+    picture's ICC profile; colours of the others are converted to sRGB, but for the text's, which
+    are the mesh's levels.
 
     Parameters
     ----------
@@ -199,7 +226,7 @@ def export(
     seams : {"crisp", "trapping"}
         For SVG how no seams show.
     fit : ndarray
-        For SVG the photograph whose pixels the gradients are fitted to.
+        For SVG the photograph whose pixels the gradients are fitted to, in the mesh's profile.
     page_width : str
         For PDF, such as "210mm".
     backend : {"native", "cairo"}

@@ -11,6 +11,7 @@ from vmesh.encoder.image import as_image
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
+from vmesh.formats.color.conversion import mesh_in_srgb, to_srgb
 from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.inspection.heat import error_levels
@@ -45,14 +46,21 @@ class Inspection:
     limits: Limits = DEFAULT_LIMITS
 
     @cached_property
+    def shown(self) -> Mesh:
+        """The mesh in sRGB, as sheets have it."""
+        return mesh_in_srgb(self.mesh)
+
+    @cached_property
     def original(self) -> UInt8Array:
-        """The photograph on white, shape (h, w, 3)."""
-        return flatten(self.photograph)
+        """The photograph in sRGB on white, shape (h, w, 3)."""
+        return flatten(to_srgb(self.photograph, self.mesh.metadata.icc))
 
     @cached_property
     def rendered(self) -> UInt8Array:
-        """The mesh on white at its own size, shape (h, w, 3)."""
-        return flatten(render(self.mesh, limits=self.limits), self.mesh.depth)
+        """The mesh in sRGB on white at its own size, shape (h, w, 3)."""
+        mesh = self.mesh
+        raster = to_srgb(render(mesh, limits=self.limits), mesh.metadata.icc, mesh.depth)
+        return flatten(raster, mesh.depth)
 
     @cached_property
     def errors(self) -> Float64Array:

@@ -69,7 +69,7 @@ def draw_triangles(inspection: Inspection, view: View) -> Iterator[Item]:
 
 def draw_render(inspection: Inspection, view: View) -> Iterator[Item]:
     """The mesh itself."""
-    yield MeshPart(view, inspection.mesh, inspection.limits)
+    yield MeshPart(view, inspection.shown, inspection.limits)
 
 
 def draw_error(inspection: Inspection, view: View) -> Iterator[Item]:

@@ -8,6 +8,7 @@ from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.settings import Settings
+from vmesh.formats.color.conversion import to_srgb
 from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.limits import Limits
@@ -32,6 +33,7 @@ def mesh_curve(
 ) -> Curve:
     """Meshes of a picture by the size of their files, each size once.
 
+    `original` is the picture in sRGB, in which they are measured.
     Vertices are what is asked for: a search for sizes would take many times as long.
     """
     points = {}
@@ -40,6 +42,7 @@ def mesh_curve(
         chosen = settings.with_goal(vertices=wanted)
         other = mesh if share == 1 else encode_with(array, chosen, progress=progress)
         size = len(dumps(other.replaced(metadata=Metadata())))
-        pixels = flatten(render(other, limits=limits), other.depth)
+        raster = to_srgb(render(other, limits=limits), mesh.metadata.icc, other.depth)
+        pixels = flatten(raster, other.depth)
         points[size] = Point(size, psnr(original, pixels))
     return Curve(_CODEC, tuple(points[size] for size in sorted(points)))

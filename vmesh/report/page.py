@@ -10,10 +10,14 @@ from string import Template
 from typing import TYPE_CHECKING, Final
 
 from vmesh.arrays import UInt8Array
+from vmesh.codec.writer import dumps
+from vmesh.formats.color.conversion import mesh_in_srgb
 from vmesh.formats.html.document import VIEWER, fill_page
 from vmesh.formats.metadata.description import Description
+from vmesh.formats.metadata.privacy import stripped
 from vmesh.formats.picture.conversion import resize
 from vmesh.formats.raster.rendering import png_of
+from vmesh.mesh import Metadata
 from vmesh.report.plot import check_matplotlib, plot_curves
 from vmesh.report.rivals import DESCRIPTION
 from vmesh.report.tables import decibels, parts_table, sizes_table, times_table
@@ -61,11 +65,20 @@ def section_of(study: Study, number: int) -> str:
         columns=shown.shape[1],
         rows=shown.shape[0],
         original=_base64(png_of(shown)),
-        data=_base64(study.data),
+        data=_base64(_public_data(study)),
         plot=plot_curves(study.curves, salt=str(number)),
         tables="\n".join(tables),
         absences=escape(_absences(study)),
     )
+
+
+def _public_data(study: Study) -> bytes:
+    """The file as a page shows it: in sRGB, without private metadata."""
+    metadata = study.mesh.metadata
+    if metadata == Metadata():
+        return study.data
+    public = study.mesh.replaced(metadata=stripped(metadata, "private"))
+    return dumps(mesh_in_srgb(public, refinement=2))
 
 
 def _summary(study: Study) -> str:

@@ -24,6 +24,7 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
+from vmesh.formats.color.conversion import to_srgb
 from vmesh.formats.picture.conversion import flatten
 from vmesh.formats.raster.rendering import render
 from vmesh.limits import DEFAULT_LIMITS, Limits
@@ -45,14 +46,14 @@ class Study:
     name : str
         Of the photograph's file.
     original : ndarray
-        Shape (h, w, 3), uint8: the photograph in 8 bits on white.
+        Shape (h, w, 3), uint8: the photograph in 8 bits of sRGB on white.
     mesh : Mesh
     data : bytes
         Its ``.vmesh`` file.
     figures : dict
         What ``vmesh info --parts`` says of the file.
     closeness : dict
-        What :func:`vmesh.metrics.compare` says of the mesh.
+        What :func:`vmesh.metrics.compare` says of the mesh, in sRGB.
     seconds : dict
         Stage -> how long it took, without the compilation of a first run.
     curves : tuple of Curve
@@ -162,7 +163,8 @@ def study_with(
 ) -> Study:
     """Study of a photograph by settings that are made already; the rest is as for `study`."""
     array, report = as_image(photograph), progress or silent
-    original = flatten(array)
+    profile = b"" if metadata is None else metadata.icc
+    original = flatten(to_srgb(array, profile))
     _compile(array, settings, limits)
     seconds: dict[str, float] = {}
     with _timed(seconds, "encode"):
@@ -174,7 +176,8 @@ def study_with(
         loads(data, limits=limits)
     with _timed(seconds, "render"):
         rendered = render(mesh, limits=limits)
-    closeness = compare(original, flatten(rendered, mesh.depth))
+    shown = flatten(to_srgb(rendered, profile, mesh.depth), mesh.depth)
+    closeness = compare(original, shown)
     own = mesh_curve(array, original, mesh, settings, limits, report)
     curves = (own, *_rivals_of(own, original, report))
     figures = describe(data, by_parts=True, limits=limits)

@@ -11,10 +11,10 @@ from html import escape
 from string import Template
 from typing import BinaryIO, Final
 
-from lxml import etree
-
 from vmesh.codec.writer import dumps
+from vmesh.formats.color.conversion import mesh_in_srgb
 from vmesh.formats.metadata.description import Description
+from vmesh.formats.metadata.xmp import parse_packet
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
 from vmesh.web.bundle import WEB, bundle
@@ -31,7 +31,8 @@ def write_html(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS)
     Parameters
     ----------
     mesh : Mesh
-        A mesh that a file may hold; its metadata are in the page as they are in the file.
+        A mesh that a file may hold; its metadata are in the page as they are in the file, but for
+        the ICC profile: colours are converted to sRGB, on half the steps.
     stream : binary file
     limits : Limits
         What the mesh may ask for.
@@ -42,7 +43,8 @@ def write_html(mesh: Mesh, stream: BinaryIO, *, limits: Limits = DEFAULT_LIMITS)
         As :func:`vmesh.dumps`.
     """
     limits.check_vertices(mesh.n_vertices)
-    stream.write(page_of(dumps(mesh), name_of(mesh)).encode())
+    shown = mesh_in_srgb(mesh, refinement=2)
+    stream.write(page_of(dumps(shown), name_of(mesh)).encode())
 
 
 def page_of(data: bytes, name: str) -> str:
@@ -75,10 +77,8 @@ def name_of(mesh: Mesh) -> str:
 
 def _xmp_title(metadata: Metadata) -> str:
     """Title or description in the XMP packet, empty if there is none or it makes no sense."""
-    parser = etree.XMLParser(resolve_entities=False, no_network=True)
-    try:
-        root = etree.fromstring(metadata.xmp, parser)
-    except etree.XMLSyntaxError:  # also of an empty packet
+    root = parse_packet(metadata.xmp)
+    if root is None:
         return ""
     for kind in ("title", "description"):
         for item in root.iterfind(f".//{_DC}{kind}//{_ITEM}"):

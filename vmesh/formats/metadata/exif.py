@@ -7,6 +7,8 @@ from typing import Any, Final
 from PIL import Image
 from PIL.TiffImagePlugin import IFDRational as Rational
 
+from vmesh.formats.metadata.directories import DETAILS, INTEROPERABILITY
+
 __all__ = [
     "CENTIMETRE",
     "EXIF_START",
@@ -15,6 +17,7 @@ __all__ = [
     "X_RESOLUTION",
     "Y_RESOLUTION",
     "Rational",
+    "names_adobe_rgb",
     "read_exif",
 ]
 
@@ -25,7 +28,8 @@ RESOLUTION_UNIT: Final = 296
 INCH: Final = 2  # as the unit of resolution
 CENTIMETRE: Final = 3
 
-_DETAILS: Final = 0x8769  # tag of the second directory, with the camera's entries
+_ADOBE_RGB: Final = "R03"  # as DCF 2.0 names it
+_SPACE: Final = 1
 
 
 def read_exif(block: bytes) -> dict[int, Any]:
@@ -35,6 +39,20 @@ def read_exif(block: bytes) -> dict[int, Any]:
     exif = Image.Exif()
     try:
         exif.load(EXIF_START + block)
-        return {**exif.get_ifd(_DETAILS), **exif}
+        return {**exif.get_ifd(DETAILS), **exif}
     except Exception:  # Pillow fails on blocks that make no sense with errors of any kind
         return {}
+
+
+def names_adobe_rgb(image: Image.Image) -> bool:
+    """True if an image's EXIF block says that its colours are in Adobe RGB.
+
+    Cameras say so instead of embedding a profile.
+    """
+    try:
+        return (
+            str(image.getexif().get_ifd(INTEROPERABILITY).get(_SPACE, "")).strip("\0 ")
+            == _ADOBE_RGB
+        )
+    except Exception:  # as above
+        return False

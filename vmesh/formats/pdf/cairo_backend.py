@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from typing import Any, BinaryIO, Final
 
+from vmesh.formats.color.conversion import mesh_in_srgb
 from vmesh.formats.metadata.description import Description
 from vmesh.formats.pdf.cairo_patterns import MeshPattern, import_cairo
 from vmesh.formats.pdf.page_size import Page
@@ -21,7 +22,7 @@ def paint_mesh(mesh: Mesh, context: Any) -> None:
 
     The top left corner of the canvas comes to the origin of user space, and a pixel is a unit of
     it: translate and scale the context to place the mesh. Nothing but the source of the context is
-    changed.
+    changed. Cairo knows no profiles: colours are converted to sRGB.
 
     Parameters
     ----------
@@ -34,6 +35,7 @@ def paint_mesh(mesh: Mesh, context: Any) -> None:
     VmeshError
         If cairo is not installed.
     """
+    mesh = mesh_in_srgb(mesh)
     colors = with_alpha(mesh.plain_colors) / 255.0
     points = mesh.points
     for first in range(0, mesh.n_triangles, _PATTERN_TRIANGLES):
@@ -44,8 +46,8 @@ def paint_mesh(mesh: Mesh, context: Any) -> None:
 
 
 def write_cairo_pdf(mesh: Mesh, stream: BinaryIO, page: Page) -> None:
-    """Write a mesh as a PDF page of a size, through cairo."""
-    cairocffi = import_cairo()
+    """Write a mesh as a PDF page of a size, through cairo, in sRGB."""
+    cairocffi, mesh = import_cairo(), mesh_in_srgb(mesh)
     # Cairo cannot pass on an error of the stream it writes to: it gets one that has none.
     buffer = io.BytesIO()
     surface = cairocffi.PDFSurface(buffer, page.width, page.height)

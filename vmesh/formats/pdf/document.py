@@ -18,8 +18,8 @@ from typing import Any, BinaryIO, Literal, get_args
 
 import pydyf
 
+from vmesh.formats.color.profiles import srgb_profile
 from vmesh.formats.metadata.description import Description
-from vmesh.formats.metadata.profiles import srgb_profile
 from vmesh.formats.pdf.mesh_content import MeshPainter, add, compressed, page_of
 from vmesh.formats.pdf.page_size import Page, make_page
 from vmesh.formats.raster.rendering import fits_icc

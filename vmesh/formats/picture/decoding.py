@@ -12,7 +12,6 @@ from vmesh.errors import ImageError, LimitError
 from vmesh.formats.picture import truncation
 from vmesh.formats.picture.adam7 import fill_blocks
 from vmesh.formats.picture.depths import rounding_note
-from vmesh.formats.picture.gamma import in_srgb
 from vmesh.formats.picture.jpeg2000 import depth_of_jpeg2000, read_jpeg2000
 from vmesh.formats.picture.modes import array_of
 from vmesh.formats.picture.opening import DamagedError, check_size, open_image
@@ -82,8 +81,6 @@ def _decode_png(data: bytes, options: PictureOptions, limits: Limits) -> Decoded
         if png.header.interlacing:
             samples = fill_blocks(samples, counts)
         notes += (truncation.note(share),) if share < 1 else ()
-    samples, more = in_srgb(samples, png.gamma, png.chromaticities)
-    notes += more
     carrier = open_image(png.carrier(), limits)
     carrier.load()
     carrier.info.update({"icc_profile": png.icc, "xmp": png.xmp})

@@ -9,7 +9,6 @@ from PIL import Image
 
 from vmesh.arrays import SampleArray
 from vmesh.errors import ImageError
-from vmesh.formats.picture.colors import in_rgb
 from vmesh.formats.picture.samples import from_numbers, with_key
 
 _SIXTEEN_BIT: Final = ("I;16", "I;16L", "I;16B", "I;16N")
@@ -57,7 +56,7 @@ def array_of(
     if image.mode in ("1", "L"):
         return np.asarray(image.convert("L")), ()
     if image.mode in _OPAQUE:
-        return np.asarray(in_rgb(image)), ()
+        return np.asarray(image.convert("RGB")), ()
     raise ImageError(f"unsupported: pixels of Pillow's mode {image.mode}")
 
 

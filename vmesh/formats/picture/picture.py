@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -11,6 +11,7 @@ from PIL import Image, ImageOps
 
 from vmesh.arrays import SampleArray
 from vmesh.errors import ImageError, LimitError
+from vmesh.formats.color.images import interpret_image
 from vmesh.formats.metadata.exif import (
     EXIF_START,
     INCH,
@@ -22,7 +23,6 @@ from vmesh.formats.picture.decoding import Decoded, decode
 from vmesh.formats.picture.modes import array_of
 from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
 from vmesh.formats.picture.tiff import STRUCTURE
-from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Metadata
 
@@ -76,7 +76,7 @@ def read_picture(
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
         warnings.simplefilter("ignore", UserWarning)
         try:
-            return _picture_of(decode(stream.read(), options, limits), limits)
+            return _picture_of(decode(stream.read(), options, limits), options, limits)
         except (ImageError, LimitError, MemoryError):
             raise
         except Exception as error:
@@ -84,15 +84,22 @@ def read_picture(
             raise ImageError(f"the image is damaged: {error}") from None
 
 
-def picture_of(image: Image.Image, *, opened: Image.Image | None = None) -> Picture:
+def picture_of(
+    image: Image.Image, *, opened: Image.Image | None = None, to_srgb: bool = False
+) -> Picture:
     """Picture of an image of Pillow: its EXIF orientation applied, alpha and palette resolved.
+
+    Colours are taken as `formats/color/` interprets them, and brought to sRGB if that is asked for.
 
     Parameters
     ----------
     image : Image
         Of any mode whose pixels have colours.
     opened : Image, optional
-        The image of a file that `image` is a copy of; it tells how integers of 32 bits are meant.
+        The image of a file that `image` is a copy of; it tells how integers of 32 bits, and inks
+        of a JPEG, are meant.
+    to_srgb : bool
+        Whether colours are converted to sRGB.
 
     Raises
     ------
@@ -100,11 +107,25 @@ def picture_of(image: Image.Image, *, opened: Image.Image | None = None) -> Pict
         If pixels of its mode have no colours.
     """
     upright = _upright(image)
-    array, notes = array_of(upright, opened=opened or image)
-    return Picture(array, _metadata_of(upright, array), notes)
+    opened = opened or image
+    if upright.mode == "CMYK":
+        return _interpreted(upright, np.asarray(upright), opened.format, to_srgb=to_srgb)
+    array, notes = array_of(upright, opened=opened)
+    picture = _interpreted(upright, array, opened.format, to_srgb=to_srgb)
+    return replace(picture, notes=notes + picture.notes)
 
 
-def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
+def _interpreted(
+    image: Image.Image, array: SampleArray, format_name: str | None, *, to_srgb: bool
+) -> Picture:
+    """Picture of samples, whose colours are what the metadata of an image say."""
+    found = interpret_image(image, array, format_name)
+    if to_srgb:
+        found = found.in_srgb()
+    return Picture(found.array, _metadata_of(image, found.icc), found.notes)
+
+
+def _picture_of(decoded: Decoded, options: PictureOptions, limits: Limits) -> Picture:
     """Picture of what a file held, turned upright, with metadata within the limits."""
     image = decoded.image
     if decoded.is_upright:
@@ -112,10 +133,10 @@ def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
         exif.pop(_ORIENTATION, None)
         image.info["exif"] = exif.tobytes() if len(exif) else b""
     if decoded.samples is None:
-        picture = picture_of(image)
+        picture = picture_of(image, to_srgb=options.to_srgb)
     else:
         array = _turned(decoded.samples, image.getexif().get(_ORIENTATION, 1))
-        picture = Picture(array, _metadata_of(_upright(image), array))
+        picture = _interpreted(_upright(image), array, image.format, to_srgb=options.to_srgb)
     metadata, notes = _within(picture.metadata, limits)
     return Picture(picture.array, metadata, decoded.notes + picture.notes + notes)
 
@@ -153,13 +174,11 @@ def _upright(image: Image.Image) -> Image.Image:
         return image
 
 
-def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
-    """Metadata of an image; an ICC profile only if it fits the array's components."""
-    profile = image.info.get("icc_profile") or b""
+def _metadata_of(image: Image.Image, icc: bytes) -> Metadata:
+    """Metadata of an image, with the ICC profile that its colours have now."""
     xmp = image.info.get("xmp") or b""
-    n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
-        icc=profile if fits_icc(profile, n_components) else b"",
+        icc=icc,
         exif=_exif_of(image),
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )

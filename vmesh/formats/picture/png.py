@@ -33,6 +33,7 @@ _GREY, _RGB = 0, 2
 _N_SAMPLES: Final = {_GREY: 1, _RGB: 3, 3: 1, 4: 2, 6: 4}
 _DEPTHS: Final = (1, 2, 4, 8, 16)
 _CRITICAL: Final = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
+_COLOR_SPACE: Final = b"cICP"
 _OF_ANIMATIONS: Final = (b"acTL", b"fcTL", b"fdAT")
 _PIECE: Final = 1 << 12  # bytes inflated at once; those before a fault are lost with it
 
@@ -79,8 +80,6 @@ class Png:
         Profile and XMP, inflated.
     key : tuple of int, optional
         Grey level, or red, green and blue, at the depth of the file, that is transparent.
-    gamma, chromaticities : bytes
-        Contents of gAMA and cHRM, empty if a profile or sRGB goes before them.
     is_whole : bool
         True if the file goes on to its last chunk.
     notes : tuple of str
@@ -92,8 +91,6 @@ class Png:
     icc: bytes = b""
     xmp: bytes = b""
     key: tuple[int, ...] | None = None
-    gamma: bytes = b""
-    chromaticities: bytes = b""
     is_whole: bool = True
     notes: tuple[str, ...] = ()
 
@@ -108,7 +105,9 @@ class Png:
 
     def carrier(self) -> bytes:
         """A file of one pixel with the metadata of this one."""
-        left_out = (b"PLTE", b"tRNS", b"IDAT", b"IEND", *_OF_ANIMATIONS)
+        left_out: tuple[bytes, ...] = (b"PLTE", b"tRNS", b"IDAT", b"IEND", *_OF_ANIMATIONS)
+        if any(kind == _COLOR_SPACE for kind, _ in self.chunks):  # which goes before these
+            left_out += (b"gAMA", b"cHRM")
         chunks = [chunk for chunk in self.chunks if chunk[0] not in left_out]
         chunks += [(b"IDAT", zlib.compress(bytes(2))), (b"IEND", b"")]
         return replace(self, header=Header(1, 1, 8, _GREY, 0, 0, 0))._joined(chunks)
@@ -201,8 +200,6 @@ def read_png(data: bytes, limits: Limits) -> Png:
         )
     if not any(kind == b"IDAT" for kind, _ in chunks):
         raise ImageError("the image is damaged: there are no samples in this PNG file")
-    named = dict(chunks)
-    has_space = not named.keys().isdisjoint((b"iCCP", b"sRGB", b"cICP"))
     kept: list[_Chunk] = []
     icc = xmp = b""
     key: tuple[int, ...] | None = None
@@ -230,10 +227,7 @@ def read_png(data: bytes, limits: Limits) -> Png:
             )
         except (zlib.error, struct.error, IndexError):
             continue  # a block that makes no sense is not worth the picture
-    gamma, chromaticities = (
-        b"" if has_space else named.get(kind, b"") for kind in (b"gAMA", b"cHRM")
-    )
-    return Png(header, kept, icc, xmp, key, gamma, chromaticities, is_whole, tuple(notes))
+    return Png(header, kept, icc, xmp, key, is_whole, tuple(notes))
 
 
 class _TooLongError(Exception):

@@ -36,7 +36,6 @@ from vmesh.progress import Progress, silent
 
 NAMESPACE: Final = "http://www.w3.org/2000/svg"
 _MASK: Final = "_alpha"  # names of gradients have no underscore
-_ICC_NOTE: Final = " Colours are numbers in the picture's own profile, which SVG has no place for. "
 
 
 def write_svg(
@@ -58,6 +57,7 @@ def write_svg(
     Parameters
     ----------
     mesh : Mesh
+        In sRGB: a profile is passed over.
     stream : binary file
     mode : {"gradient", "exact", "auto", "flat"}
         What fills a triangle: its best linear gradient, three gradients in layers that are
@@ -170,5 +170,3 @@ def _write_description(document: etree._IncrementalFileWriter, mesh: Mesh) -> No
             element = etree.Element(name)
             element.text = text
             document.write(element)
-    if mesh.metadata.icc:
-        document.write(etree.Comment(_ICC_NOTE))
