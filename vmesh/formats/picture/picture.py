@@ -101,7 +101,7 @@ def picture_of(image: Image.Image, *, opened: Image.Image | None = None) -> Pict
     """
     upright = _upright(image)
     array, notes = array_of(upright, opened=opened or image)
-    return Picture(array, _metadata_of(upright, array), notes)
+    return _with_metadata(array, upright, notes)
 
 
 def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
@@ -115,9 +115,14 @@ def _picture_of(decoded: Decoded, limits: Limits) -> Picture:
         picture = picture_of(image)
     else:
         array = _turned(decoded.samples, image.getexif().get(_ORIENTATION, 1))
-        picture = Picture(array, _metadata_of(_upright(image), array))
+        picture = _with_metadata(array, _upright(image), ())
     metadata, notes = _within(picture.metadata, limits)
     return Picture(picture.array, metadata, decoded.notes + picture.notes + notes)
+
+
+def _with_metadata(array: SampleArray, upright: Image.Image, notes: tuple[str, ...]) -> Picture:
+    """Picture of upright samples and of the image that has their metadata."""
+    return Picture(array, _metadata_of(upright, array), notes)
 
 
 def _turned(array: SampleArray, orientation: int) -> SampleArray:
