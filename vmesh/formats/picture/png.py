@@ -275,7 +275,7 @@ def _read_text(kind: bytes, content: bytes, limits: Limits) -> tuple[bytes, byte
 
 
 def _inflate(data: bytes, limits: Limits) -> bytes:
-    """What a stream inflates to, within the limit on metadata."""
+    """Inflate a stream, within the limit on metadata."""
     stream = zlib.decompressobj()
     text = stream.decompress(data, limits.max_metadata + 1)
     if len(text) > limits.max_metadata:
@@ -284,7 +284,7 @@ def _inflate(data: bytes, limits: Limits) -> bytes:
 
 
 def _inflate_some(pieces: Iterable[bytes], n_wanted: int) -> bytes:
-    """What can be inflated of a stream that may be cut off, at most so many bytes."""
+    """Inflate a stream that may be cut off as far as it goes, to so many bytes at most."""
     stream, inflated = zlib.decompressobj(), bytearray()
     for piece in pieces:
         for at in range(0, len(piece), _PIECE):

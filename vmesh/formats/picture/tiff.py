@@ -340,7 +340,7 @@ def _completed(piece: bytes, page: TiffPage, shape: tuple[int, ...]) -> tuple[by
 
 
 def _unpack_start(piece: bytes) -> bytes:
-    """What PackBits can be unpacked of a piece, whose last run may be cut off."""
+    """Unpack a piece of PackBits, whose last run may be cut off."""
     import imagecodecs
 
     for n_left_out in range(min(len(piece), _LONGEST_RUN) + 1):

@@ -80,7 +80,7 @@ def note(share: float | None, *, is_coarse: bool = False) -> str:
 
 
 def read_partly(data: bytes, decode: Decode) -> Partial | None:
-    """What there is of a picture, None if its decoder makes nothing of a part.
+    """Part of a picture that a file holds, None if its decoder makes nothing of a part.
 
     Parameters
     ----------
