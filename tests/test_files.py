@@ -334,3 +334,5 @@ def test_what_may_be_replaced_follows_from_the_request_and_from_who_named_it(
     check_replaceable(path, overwrite=True, is_named=True)
     with pytest.raises(PermissionError, match="write-protected"):
         check_replaceable(path, overwrite=None, is_named=True)
+    with pytest.raises(IsADirectoryError, match="is a folder"):
+        check_replaceable(tmp_path, overwrite=True, is_named=True)

@@ -104,13 +104,17 @@ def check_replaceable(
         If it is there, and stays.
     PermissionError
         If it is protected, and stays.
+    IsADirectoryError
+        If it is a folder.
     """
     name = os.fspath(path)
     try:
         status = Path(path).stat()
     except OSError:
         return  # Nothing is there, or writing will tell.
-    is_stream = not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode)
+    if stat.S_ISDIR(status.st_mode):
+        raise IsADirectoryError(f"{name} is a folder")
+    is_stream = not stat.S_ISREG(status.st_mode)
     if overwrite or (is_stream and is_named):
         return
     if overwrite is not None or not is_named:
