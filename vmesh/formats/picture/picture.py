@@ -12,6 +12,7 @@ from PIL import Image, ImageOps
 
 from vmesh.arrays import SampleArray
 from vmesh.errors import ImageError
+from vmesh.formats.color.images import interpret_image
 from vmesh.formats.metadata.exif import (
     EXIF_START,
     INCH,
@@ -20,7 +21,6 @@ from vmesh.formats.metadata.exif import (
     Y_RESOLUTION,
 )
 from vmesh.formats.picture.options import DEFAULT_OPTIONS, PictureOptions
-from vmesh.formats.raster.rendering import fits_icc
 from vmesh.limits import DEFAULT_LIMITS, MAX_SIDE, Limits
 from vmesh.mesh import Metadata
 
@@ -87,7 +87,7 @@ def read_picture(
             )
         try:
             image.load()
-            return picture_of(image)
+            return picture_of(image, to_srgb=options.to_srgb)
         except MemoryError:
             raise
         except Exception as error:
@@ -95,8 +95,10 @@ def read_picture(
             raise ImageError(f"the image is damaged: {error}") from None
 
 
-def picture_of(image: Image.Image) -> Picture:
+def picture_of(image: Image.Image, *, to_srgb: bool = False) -> Picture:
     """Picture of an image of Pillow: its EXIF orientation applied, alpha and palette resolved.
+
+    Colours are taken as `formats/color/` interprets them, and brought to sRGB if that is asked for.
 
     Raises
     ------
@@ -104,8 +106,11 @@ def picture_of(image: Image.Image) -> Picture:
         If pixels of its mode have no colours, as those of "F".
     """
     upright = _upright(image)
-    array = _array_of(upright)
-    return Picture(array, _metadata_of(upright, array))
+    array = np.asarray(upright) if upright.mode == "CMYK" else _array_of(upright)
+    found = interpret_image(upright, array, image.format)
+    if to_srgb:
+        found = found.in_srgb()
+    return Picture(found.array, _metadata_of(upright, found.icc), found.notes)
 
 
 def _open(stream: BinaryIO) -> Image.Image:
@@ -144,13 +149,11 @@ def _array_of(image: Image.Image) -> SampleArray:
     raise ValueError(f"pixels of type {image.mode} are not supported")
 
 
-def _metadata_of(image: Image.Image, array: SampleArray) -> Metadata:
-    """Metadata of an image; an ICC profile only if it fits the array's components."""
-    profile = image.info.get("icc_profile") or b""
+def _metadata_of(image: Image.Image, icc: bytes) -> Metadata:
+    """Metadata of an image, with the ICC profile that its colours have now."""
     xmp = image.info.get("xmp") or b""
-    n_components = 1 if array.ndim == 2 else array.shape[2]
     return Metadata(
-        icc=profile if fits_icc(profile, n_components) else b"",
+        icc=icc,
         exif=_exif_of(image),
         xmp=xmp.encode() if isinstance(xmp, str) else bytes(xmp),
     )
