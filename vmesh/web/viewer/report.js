@@ -3,16 +3,23 @@
 import { decode } from "../decoder/vmesh.js";
 import { elementIn } from "./dom.js";
 import { bytesIn } from "./embedded.js";
-import { paintWhole } from "./shared_painter.js";
+import { markingPainterFor } from "./marking_painters.js";
+import { toSrgb } from "./profile.js";
+import { SharedPainter } from "./shared_painter.js";
+
+const PAINTER = new SharedPainter(markingPainterFor);
 
 class Comparison {
-  /** @param {Element} section */
-  constructor(section) {
+  /**
+   * @param {Element} section
+   * @param {import("../decoder/vmesh.js").Mesh} mesh
+   */
+  constructor(section, mesh) {
+    this.mesh = mesh;
     this.stage = elementIn(section, ".stage", HTMLElement);
     this.canvas = elementIn(section, "canvas", HTMLCanvasElement);
     this.photographColumns = this.canvas.width;
     this.wireframe = false;
-    this.mesh = decode(bytesIn(elementIn(section, "script", HTMLElement)));
     const divider = elementIn(section, "input", HTMLInputElement);
     divider.addEventListener("input", () => this.divide(divider.value));
     const button = elementIn(section, "button", HTMLElement);
@@ -42,8 +49,12 @@ class Comparison {
     const shown = Math.round(this.stage.clientWidth * devicePixelRatio);
     // The browser reduces the mesh as the photograph, but lines should not fade by that.
     const columns = wireframe ? shown : Math.max(shown, this.photographColumns);
-    paintWhole(mesh, canvas, columns, (columns * mesh.height) / mesh.width, { wireframe });
+    const rows = (columns * mesh.height) / mesh.width;
+    PAINTER.paint(mesh, canvas, columns, rows, { wireframe });
   }
 }
 
-for (const section of document.querySelectorAll("section")) new Comparison(section);
+for (const section of document.querySelectorAll("section")) {
+  const bytes = bytesIn(elementIn(section, "script", HTMLElement));
+  toSrgb(decode(bytes)).then((mesh) => new Comparison(section, mesh));
+}
