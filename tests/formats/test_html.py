@@ -249,7 +249,7 @@ def test_a_page_shows_a_wide_gamut_in_the_colours_of_the_screen(
         page.add_init_script(NO_WEBGL)
     profile = matrix_profile(DISPLAY_P3)
     wide = mesh.replaced(metadata=Metadata(icc=profile))
-    shown = pixels_of(show(page, exported(wide, tmp_path), tmp_path))
+    shown = pixels_of(show(page, page_of(vmesh.dumps(wide), "A cup"), tmp_path))
     expected = ImageCms.profileToProfile(
         Image.fromarray(np.asarray(vmesh.render(mesh))),
         ImageCms.ImageCmsProfile(io.BytesIO(profile)),

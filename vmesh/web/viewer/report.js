@@ -4,22 +4,18 @@ import { decode } from "../decoder/vmesh.js";
 import { elementIn } from "./dom.js";
 import { bytesIn } from "./embedded.js";
 import { markingPainterFor } from "./marking_painters.js";
-import { toSrgb } from "./profile.js";
 import { SharedPainter } from "./shared_painter.js";
 
 const PAINTER = new SharedPainter(markingPainterFor);
 
 class Comparison {
-  /**
-   * @param {Element} section
-   * @param {import("../decoder/vmesh.js").Mesh} mesh
-   */
-  constructor(section, mesh) {
-    this.mesh = mesh;
+  /** @param {Element} section */
+  constructor(section) {
     this.stage = elementIn(section, ".stage", HTMLElement);
     this.canvas = elementIn(section, "canvas", HTMLCanvasElement);
     this.photographColumns = this.canvas.width;
     this.wireframe = false;
+    this.mesh = decode(bytesIn(elementIn(section, "script", HTMLElement)));
     const divider = elementIn(section, "input", HTMLInputElement);
     divider.addEventListener("input", () => this.divide(divider.value));
     const button = elementIn(section, "button", HTMLElement);
@@ -54,7 +50,4 @@ class Comparison {
   }
 }
 
-for (const section of document.querySelectorAll("section")) {
-  const bytes = bytesIn(elementIn(section, "script", HTMLElement));
-  toSrgb(decode(bytes)).then((mesh) => new Comparison(section, mesh));
-}
+for (const section of document.querySelectorAll("section")) new Comparison(section);
