@@ -13,12 +13,12 @@ import { painterFor } from "./painter.js";
 import { toSrgb } from "./profile.js";
 import { SharedPainter } from "./shared_painter.js";
 
-const NAME = "vmesh-image";
 const PAINTER = new SharedPainter(painterFor);
 
 /** Where there are no elements the class is not used. */
 const Base = globalThis.HTMLElement ?? class {};
 
+/** The element; it is defined where this module is imported, unless it is already. */
 export class VmeshImage extends Base {
   static observedAttributes = ["src", "alt", "width", "height", "loading"];
 
@@ -187,4 +187,6 @@ function lengthOf(text) {
   return number ? number + (percent || "px") : "";
 }
 
-if (globalThis.customElements && !customElements.get(NAME)) customElements.define(NAME, VmeshImage);
+if (globalThis.customElements && !customElements.get("vmesh-image")) {
+  customElements.define("vmesh-image", VmeshImage);
+}
