@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted(
     path.relative_to(ROOT).as_posix()
-    for folder in (".", "docs", "docs/design", "spec", "tools/desktop", "tests/images")
+    for folder in (".", "docs", "docs/design", "spec", "tools/desktop", "tests/images", "vmesh/web")
     for path in (ROOT / folder).glob("*.md")
 )
 ARCHITECTURE = (ROOT / "ARCHITECTURE.md").read_text("utf-8")

@@ -1,22 +1,24 @@
-"""Pages and the element in a browser; test_bundle.py has what needs none."""
+"""Pages in a browser; tests/web has the element, and what needs none."""
 
 from __future__ import annotations
 
-import base64
+import io
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+from PIL import Image, ImageCms
 
 import vmesh
 from tests.formats.browser import NO_WEBGL, pixels_of, playwright, running, settle, wait_until
-from tests.pictures import PICTURES, share_apart
+from tests.pictures import psnr, share_apart
+from tests.web.profiles import DISPLAY_P3, matrix_profile
 from vmesh.arrays import UInt8Array
-from vmesh.formats.html.document import element_script, page_of
+from vmesh.formats.html.document import page_of
 from vmesh.formats.picture.conversion import flatten
+from vmesh.mesh import Metadata
 
 BAR = 40  # rows below the stage
 CONFORMING = Path(__file__).parents[2] / "spec" / "conformance" / "valid"
@@ -239,111 +241,20 @@ def test_the_name_of_a_picture_is_its_alternative_text_and_the_title_of_the_page
     assert page.title() == name
 
 
-class Site:
-    """Pages with the element on them, and files beside them."""
-
-    def __init__(self, page: playwright.Page) -> None:
-        self.page = page
-        self.asked: list[str] = []
-        self.files: dict[str, bytes] = {"vmesh-image.js": element_script().encode()}
-        page.route("http://site.test/**", self._answer)
-
-    def _answer(self, route: Any) -> None:
-        name = route.request.url.rsplit("/", 1)[1]
-        self.asked.append(name)
-        kind = "text/html" if name == "page" else "text/javascript"
-        found = name in self.files
-        route.fulfill(
-            status=200 if found else 404, body=self.files.get(name, b""), content_type=kind
-        )
-
-    def open(self, body: str) -> None:
-        """Open a page; what happens to its elements is noted in `events`."""
-        note = """const events = [];
-        for (const type of ["load", "error"]) document.addEventListener(type, (event) => {
-          if (event.target.localName === "vmesh-image") events.push(type);
-        }, true);"""
-        head = f'<!doctype html><script>{note}</script><script src="vmesh-image.js"></script>'
-        self.files["page"] = f"{head}<body style='margin: 0'>{body}".encode()
-        self.page.goto("http://site.test/page")
-
-    def wait_for(self, n_events: int) -> list[str]:
-        """Events of the elements, once there are so many."""
-        wait_until(self.page, f"events.length >= {n_events}")
-        events: list[str] = self.page.evaluate("events")
-        return events
-
-
-@pytest.fixture
-def site(page: playwright.Page, mesh: vmesh.Mesh) -> Site:
-    made = Site(page)
-    made.files["cup.vmesh"] = vmesh.dumps(mesh)
-    return made
-
-
-def test_the_element_shows_a_file_at_its_size(site: Site, mesh: vmesh.Mesh) -> None:
-    site.open('<vmesh-image src="cup.vmesh" alt="A cup"></vmesh-image>')
-    assert site.wait_for(1) == ["load"]
-    shown = pixels_of(site.page.locator("vmesh-image"))
-    check_pixels(shown, vmesh.render(mesh))
-    # Playwright knows no roles but those in attributes: the browser itself is asked.
-    tree = site.page.context.new_cdp_session(site.page).send("Accessibility.getFullAXTree")
-    named = [node for node in tree["nodes"] if node.get("name", {}).get("value") == "A cup"]
-    assert "image" in [node["role"]["value"] for node in named]
-
-
-def test_the_element_takes_a_data_uri(site: Site, mesh: vmesh.Mesh) -> None:
-    source = "data:image/vnd.vmesh;base64," + base64.b64encode(vmesh.dumps(mesh)).decode()
-    site.open(f'<vmesh-image src="{source}" style="width: 300px"></vmesh-image>')
-    assert site.wait_for(1) == ["load"]
-    shown = pixels_of(site.page.locator("vmesh-image"))
-    check_pixels(shown, vmesh.render(mesh, scale=0.5))
-
-
-@pytest.mark.parametrize(
-    ("fit", "size"),
-    [("contain", (300, 200)), ("cover", (600, 400)), ("fill", (300, 400)), ("none", (600, 400))],
-)
-def test_the_element_follows_object_fit(
-    site: Site, mesh: vmesh.Mesh, fit: str, size: tuple[int, int]
+@pytest.mark.parametrize("has_webgl", [True, False])
+def test_a_page_shows_a_wide_gamut_in_the_colours_of_the_screen(
+    page: playwright.Page, mesh: vmesh.Mesh, tmp_path: Path, has_webgl: bool
 ) -> None:
-    style = f"width: 300px; height: 400px; object-fit: {fit}"
-    site.open(f'<vmesh-image src="cup.vmesh" style="{style}"></vmesh-image>')
-    site.wait_for(1)
-    shown = pixels_of(site.page.locator("vmesh-image"))
-    expected = np.full((400, 300, 3), 255, dtype=np.uint8)
-    picture = np.asarray(vmesh.render(mesh, width=size[0], height=size[1]))
-    across, down = (600 - 300) // 2 if size[0] == 600 else 0, (400 - size[1]) // 2
-    expected[down : down + size[1]] = picture[:, across : across + 300]
-    check_pixels(shown, expected)
-
-
-def test_the_element_shows_its_alternative_text_in_place_of_a_damaged_file(site: Site) -> None:
-    site.files["cup.vmesh"] = site.files["cup.vmesh"][:-1]
-    site.open('<vmesh-image src="cup.vmesh" alt="A cup"></vmesh-image>')
-    assert site.wait_for(1) == ["error"]
-    assert site.page.locator("vmesh-image span").inner_text() == "A cup"
-
-
-def test_the_element_loads_another_source(site: Site) -> None:
-    site.open('<vmesh-image src="data:,nothing" alt="A cup"></vmesh-image>')
-    assert site.wait_for(1) == ["error"]
-    site.page.evaluate("document.querySelector('vmesh-image').src = 'cup.vmesh'")
-    assert site.wait_for(2) == ["error", "load"]
-
-
-def test_a_lazy_element_waits_until_it_comes_into_sight(site: Site) -> None:
-    lazy = '<vmesh-image loading="lazy" src="cup.vmesh"></vmesh-image>'
-    site.open(f'<div style="height: 9000px"></div>{lazy}')
-    settle(site.page)
-    assert "cup.vmesh" not in site.asked
-    site.page.evaluate("scrollTo(0, 9000)")
-    assert site.wait_for(1) == ["load"]
-
-
-def test_more_elements_than_webgl_contexts_are_all_shown(site: Site) -> None:
-    site.files["small.vmesh"] = vmesh.dumps(vmesh.encode(PICTURES["ramp"], vertices=9))
-    site.open('<vmesh-image src="small.vmesh"></vmesh-image>' * 30)
-    assert site.wait_for(30) == ["load"] * 30
-    for element in site.page.locator("vmesh-image").all()[::29]:
-        assert pixels_of(element).std() > 30
+    if not has_webgl:
+        page.add_init_script(NO_WEBGL)
+    profile = matrix_profile(DISPLAY_P3)
+    wide = mesh.replaced(metadata=Metadata(icc=profile))
+    shown = pixels_of(show(page, page_of(vmesh.dumps(wide), "A cup"), tmp_path))
+    expected = ImageCms.profileToProfile(
+        Image.fromarray(np.asarray(vmesh.render(mesh))),
+        ImageCms.ImageCmsProfile(io.BytesIO(profile)),
+        ImageCms.createProfile("sRGB"),
+        renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
+    )
+    assert psnr(shown, np.asarray(expected)) > psnr(shown, np.asarray(vmesh.render(mesh))) + 10
+    assert psnr(shown, np.asarray(expected)) > 40

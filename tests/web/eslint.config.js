@@ -17,6 +17,8 @@ export default [
       "prefer-template": "error",
     },
   },
+  { ignores: ["vmesh/web/dist/", "vmesh/web/types/"] },
+  { files: ["tests/web/*.js"], languageOptions: { globals: globals.node } },
   // The decoder itself uses nothing but the language: it runs in browsers and in Node.
   { files: ["vmesh/web/decoder/decode.js"], languageOptions: { globals: globals.node } },
   { files: ["vmesh/web/viewer/*.js"], languageOptions: { globals: globals.browser } },

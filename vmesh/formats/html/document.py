@@ -17,7 +17,7 @@ from vmesh.formats.metadata.description import Description
 from vmesh.formats.metadata.xmp import parse_packet
 from vmesh.limits import DEFAULT_LIMITS, Limits
 from vmesh.mesh import Mesh, Metadata
-from vmesh.web.bundle import WEB, bundle
+from vmesh.web import WEB, built_script
 
 VIEWER: Final = WEB / "viewer"
 
@@ -57,13 +57,13 @@ def fill_page(page: str, **texts: str) -> str:
     return Template((VIEWER / f"{page}.html").read_text("utf-8")).substitute(
         texts,
         style=(VIEWER / f"{page}.css").read_text("utf-8"),
-        script=bundle(f"viewer/{page}.js"),
+        script=built_script(page),
     )
 
 
 def element_script() -> str:
     """The script of the element ``<vmesh-image>``, one file without dependencies."""
-    return bundle("viewer/element.js")
+    return built_script("vmesh-image")
 
 
 def name_of(mesh: Mesh) -> str:

@@ -129,42 +129,47 @@ function clamp(value, least, most) {
 
 /** Reads the levels of one component. */
 class LevelReader {
+  #decoder;
+  #highest;
+  #lowest;
+  #sizes;
+  #lengths = Contexts.even(N_SPREADS);
+  #bits = Contexts.even(N_SPREADS);
+  #signs = Contexts.even(3);
+
   /**
    * @param {import("./range_coder.js").RangeDecoder} decoder
    * @param {number} component
    * @param {number} highest level
    */
   constructor(decoder, component, highest) {
-    this.decoder = decoder;
-    this.highest = highest;
-    this.lowest = component === 1 || component === 2 ? -highest : 0;
-    this.sizes = sizeContexts(MORE_THAN[Math.min(component, 1)]);
-    this.lengths = Contexts.even(N_SPREADS);
-    this.bits = Contexts.even(N_SPREADS);
-    this.signs = Contexts.even(3);
+    this.#decoder = decoder;
+    this.#highest = highest;
+    this.#lowest = component === 1 || component === 2 ? -highest : 0;
+    this.#sizes = sizeContexts(MORE_THAN[Math.min(component, 1)]);
   }
 
   /** @param {Expectation} expectation */
   read({ prediction, spread, lean }) {
-    const size = this.readSize(spread);
-    const isNegative = size > 0 && this.decoder.bit(this.signs, lean);
+    const size = this.#readSize(spread);
+    const isNegative = size > 0 && this.#decoder.bit(this.#signs, lean);
     const level = isNegative ? prediction - size : prediction + size;
-    check(this.lowest <= level && level <= this.highest, "colors");
+    check(this.#lowest <= level && level <= this.#highest, "colors");
     return level;
   }
 
   /** @param {number} spread */
-  readSize(spread) {
+  #readSize(spread) {
     for (let size = 0; size < MOST_UNARY; size++) {
-      if (!this.decoder.bit(this.sizes, spread * MOST_UNARY + size)) return size;
+      if (!this.#decoder.bit(this.#sizes, spread * MOST_UNARY + size)) return size;
     }
     let length = 0;
-    while (this.decoder.bit(this.lengths, spread)) {
+    while (this.#decoder.bit(this.#lengths, spread)) {
       length++;
       check(length <= LONGEST_REST, "colors");
     }
     let value = 1;
-    for (let i = 0; i < length; i++) value = 2 * value + this.decoder.bit(this.bits, spread);
+    for (let i = 0; i < length; i++) value = 2 * value + this.#decoder.bit(this.#bits, spread);
     return MOST_UNARY - 1 + value;
   }
 }

@@ -63,29 +63,33 @@ export function readFlips(decoder, points, mesh, luma) {
 
 /** First in, first out; each edge with a twin is in it no more than once. */
 class EdgeQueue {
+  #twin;
+  #ring;
+  #isQueued;
+  #front = 0;
+
   /** @param {Int32Array} twin */
   constructor(twin) {
-    this.twin = twin;
-    this.ring = new Int32Array(twin.length);
-    this.isQueued = new Uint8Array(twin.length);
-    this.front = 0;
+    this.#twin = twin;
+    this.#ring = new Int32Array(twin.length);
+    this.#isQueued = new Uint8Array(twin.length);
     this.length = 0;
   }
 
   /** @param {number} e */
   push(e) {
-    const f = this.twin[e];
-    if (f === NO_TWIN || this.isQueued[e] || this.isQueued[f]) return;
-    this.ring[(this.front + this.length) % this.ring.length] = e;
-    this.isQueued[e] = 1;
+    const f = this.#twin[e];
+    if (f === NO_TWIN || this.#isQueued[e] || this.#isQueued[f]) return;
+    this.#ring[(this.#front + this.length) % this.#ring.length] = e;
+    this.#isQueued[e] = 1;
     this.length++;
   }
 
   shift() {
-    const e = this.ring[this.front];
-    this.front = (this.front + 1) % this.ring.length;
+    const e = this.#ring[this.#front];
+    this.#front = (this.#front + 1) % this.#ring.length;
     this.length--;
-    this.isQueued[e] = 0;
+    this.#isQueued[e] = 0;
     return e;
   }
 }

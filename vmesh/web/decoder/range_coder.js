@@ -33,26 +33,28 @@ export class Contexts {
 }
 
 export class RangeDecoder {
+  #content;
+  #position = 0;
+  // The range may be 2**32, so that both are doubles that hold integers.
+  #range = 2 ** 32;
+  #code = 0;
+
   /** @param {Uint8Array} content of the chunk `M` */
   constructor(content) {
-    this.content = content;
-    this.position = 0;
+    this.#content = content;
     /**
      * What is being decoded: the code of the error if the content ends.
      *
      * @type {import("./errors.js").ErrorCode}
      */
     this.part = "positions";
-    // The range may be 2**32, so that both are doubles that hold integers.
-    this.range = 2 ** 32;
-    this.code = 0;
-    for (let i = 0; i < BYTES_AHEAD; i++) this.code = 256 * this.code + this.nextByte();
+    for (let i = 0; i < BYTES_AHEAD; i++) this.#code = 256 * this.#code + this.#nextByte();
   }
 
-  nextByte() {
-    const at = this.position++;
-    if (at < this.content.length) return this.content[at];
-    check(at < this.content.length + BYTES_AHEAD, this.part);
+  #nextByte() {
+    const at = this.#position++;
+    if (at < this.#content.length) return this.#content[at];
+    check(at < this.#content.length + BYTES_AHEAD, this.part);
     return 0;
   }
 
@@ -64,26 +66,26 @@ export class RangeDecoder {
   bit(contexts, i) {
     const p = contexts.probabilities[i];
     const n = contexts.seen[i];
-    const split = Math.floor(this.range / 4096) * (p >> 4);
-    const bit = this.code < split ? 1 : 0;
+    const split = Math.floor(this.#range / 4096) * (p >> 4);
+    const bit = this.#code < split ? 1 : 0;
     if (bit) {
-      this.range = split;
+      this.#range = split;
     } else {
-      this.range -= split;
-      this.code -= split;
+      this.#range -= split;
+      this.#code -= split;
     }
     const moved = p + Math.floor((65536 * bit - p) / (n + 2));
     contexts.probabilities[i] = Math.min(Math.max(moved, LEAST), MOST);
     if (n < MOST_SEEN) contexts.seen[i] = n + 1;
-    while (this.range < 2 ** 24) {
-      this.range *= 256;
-      this.code = 256 * this.code + this.nextByte();
+    while (this.#range < 2 ** 24) {
+      this.#range *= 256;
+      this.#code = 256 * this.#code + this.#nextByte();
     }
     return bit;
   }
 
   /** Everything is decoded: no byte may be left. */
   end() {
-    check(this.position >= this.content.length, this.part);
+    check(this.#position >= this.#content.length, this.part);
   }
 }

@@ -17,31 +17,34 @@ function crc32(bytes) {
 
 /** Reads fields one after the other. */
 export class Reader {
+  #bytes;
+  #short;
+
   /**
    * @param {Uint8Array} bytes
    * @param {import("./errors.js").ErrorCode} short code of the error if they end too early
    */
   constructor(bytes, short) {
-    this.bytes = bytes;
-    this.short = short;
+    this.#bytes = bytes;
+    this.#short = short;
     this.position = 0;
   }
 
   atEnd() {
-    return this.position === this.bytes.length;
+    return this.position === this.#bytes.length;
   }
 
   /** @param {number} length */
   take(length) {
     const end = this.position + length;
-    check(end <= this.bytes.length, this.short);
-    const taken = this.bytes.subarray(this.position, end);
+    check(end <= this.#bytes.length, this.#short);
+    const taken = this.#bytes.subarray(this.position, end);
     this.position = end;
     return taken;
   }
 
   rest() {
-    return this.bytes.subarray(this.position);
+    return this.#bytes.subarray(this.position);
   }
 
   byte() {
@@ -72,7 +75,7 @@ export class Reader {
    * @param {number} start
    */
   checksum(start) {
-    const covered = this.bytes.subarray(start, this.position);
+    const covered = this.#bytes.subarray(start, this.position);
     const [b0, b1, b2, b3] = this.take(4);
     const stored = (b0 | (b1 << 8) | (b2 << 16) | (b3 << 24)) >>> 0;
     check(stored === crc32(covered), "checksum");

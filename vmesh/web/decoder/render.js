@@ -71,39 +71,45 @@ function rowsOf({ vertices, triangles, subdivision, height }, at) {
  * perRow[i] * y`.
  */
 class Rasterizer {
+  #mesh;
+  #mostDet;
+  #components;
+  #data;
+  #pixel;
+  #atOrigin = new Float64Array(3);
+  #perColumn = new Float64Array(3);
+  #perRow = new Float64Array(3);
+  /** The least weights of the pixels of the triangle: by the top-left rule 0 or 1. */
+  #least = new Float64Array(3);
+  /** Weights at column 0 of the current row. */
+  #atRow = new Float64Array(3);
+  /** Weights at the first pixel of the current row. */
+  #weights = new Float64Array(3);
+
   /**
    * @param {import("./vmesh.js").Mesh} mesh
    * @param {Uint8Array | Uint16Array} data
    */
   constructor(mesh, data) {
-    this.mesh = mesh;
-    this.mostDet = 2 ** (52 - mesh.depth);
-    this.components = mesh.steps.length;
-    this.data = data;
-    this.pixel = 2 ** (mesh.subdivision + 1);
-    this.atOrigin = new Float64Array(3);
-    this.perColumn = new Float64Array(3);
-    this.perRow = new Float64Array(3);
-    /** The least weights of the pixels of the triangle: by the top-left rule 0 or 1. */
-    this.least = new Float64Array(3);
-    /** Weights at column 0 of the current row. */
-    this.atRow = new Float64Array(3);
-    /** Weights at the first pixel of the current row. */
-    this.weights = new Float64Array(3);
+    this.#mesh = mesh;
+    this.#mostDet = 2 ** (52 - mesh.depth);
+    this.#components = mesh.steps.length;
+    this.#data = data;
+    this.#pixel = 2 ** (mesh.subdivision + 1);
   }
 
   /** @param {number} at place of the triangle's first corner */
   draw(at) {
-    const { vertices, triangles } = this.mesh;
+    const { vertices, triangles } = this.#mesh;
     const [a, b, c] = [triangles[at], triangles[at + 1], triangles[at + 2]];
-    this.setSide(0, b, c);
-    this.setSide(1, c, a);
-    this.setSide(2, a, b);
+    this.#setSide(0, b, c);
+    this.#setSide(1, c, a);
+    this.#setSide(2, a, b);
     const det = 4 * cross(vertices, a, b, c);
-    const [first, last] = rowsOf(this.mesh, at);
+    const [first, last] = rowsOf(this.#mesh, at);
     for (let y = first; y <= last; y++) {
-      for (let i = 0; i < 3; i++) this.atRow[i] = this.atOrigin[i] + this.perRow[i] * y;
-      this.drawRow(at, det, y);
+      for (let i = 0; i < 3; i++) this.#atRow[i] = this.#atOrigin[i] + this.#perRow[i] * y;
+      this.#drawRow(at, det, y);
     }
   }
 
@@ -114,17 +120,17 @@ class Rasterizer {
    * @param {number} u
    * @param {number} v
    */
-  setSide(i, u, v) {
-    const { vertices } = this.mesh;
+  #setSide(i, u, v) {
+    const { vertices } = this.#mesh;
     const ux = 2 * vertices[2 * u];
     const uy = 2 * vertices[2 * u + 1];
     const dx = 2 * vertices[2 * v] - ux;
     const dy = 2 * vertices[2 * v + 1] - uy;
-    const centre = this.pixel / 2;
-    this.atOrigin[i] = dx * (centre - uy) - dy * (centre - ux);
-    this.perColumn[i] = -dy * this.pixel;
-    this.perRow[i] = dx * this.pixel;
-    this.least[i] = dy < 0 || (dy === 0 && dx > 0) ? 0 : 1;
+    const centre = this.#pixel / 2;
+    this.#atOrigin[i] = dx * (centre - uy) - dy * (centre - ux);
+    this.#perColumn[i] = -dy * this.#pixel;
+    this.#perRow[i] = dx * this.#pixel;
+    this.#least[i] = dy < 0 || (dy === 0 && dx > 0) ? 0 : 1;
   }
 
   /**
@@ -132,17 +138,17 @@ class Rasterizer {
    * @param {number} det
    * @param {number} y
    */
-  drawRow(at, det, y) {
-    const { atRow, perColumn, least } = this;
+  #drawRow(at, det, y) {
+    const perColumn = this.#perColumn;
     let start = 0;
-    let end = this.mesh.width - 1;
+    let end = this.#mesh.width - 1;
     for (let i = 0; i < 3; i++) {
-      const spare = atRow[i] - least[i];
+      const spare = this.#atRow[i] - this.#least[i];
       if (perColumn[i] > 0) start = Math.max(start, Math.ceil(-spare / perColumn[i]));
       else if (perColumn[i] < 0) end = Math.min(end, Math.floor(spare / -perColumn[i]));
       else if (spare < 0) return;
     }
-    if (start <= end) this.fill(at, det, y, start, end);
+    if (start <= end) this.#fill(at, det, y, start, end);
   }
 
   /**
@@ -155,17 +161,20 @@ class Rasterizer {
    * @param {number} start
    * @param {number} end
    */
-  fill(at, det, y, start, end) {
-    const { components, data, perColumn, weights, mostDet } = this;
-    const { samples, triangles, width } = this.mesh;
-    for (let i = 0; i < 3; i++) weights[i] = this.atRow[i] + perColumn[i] * start;
+  #fill(at, det, y, start, end) {
+    const components = this.#components;
+    const data = this.#data;
+    const perColumn = this.#perColumn;
+    const weights = this.#weights;
+    const { samples, triangles, width } = this.#mesh;
+    for (let i = 0; i < 3; i++) weights[i] = this.#atRow[i] + perColumn[i] * start;
     for (let component = 0; component < components; component++) {
       const c0 = samples[triangles[at] * components + component];
       const c1 = samples[triangles[at + 1] * components + component];
       const c2 = samples[triangles[at + 2] * components + component];
       let place = (y * width + start) * components + component;
-      if (det > mostDet) {
-        this.fillInParts([c0, c1, c2], det, place, start, end);
+      if (det > this.#mostDet) {
+        this.#fillInParts([c0, c1, c2], det, place, start, end);
         continue;
       }
       let numerator = 2 * (c0 * weights[0] + c1 * weights[1] + c2 * weights[2]) + det;
@@ -188,19 +197,19 @@ class Rasterizer {
    * @param {number} start
    * @param {number} end
    */
-  fillInParts(corners, det, place, start, end) {
+  #fillInParts(corners, det, place, start, end) {
     for (let x = start; x <= end; x++) {
       let upper = 0;
       let lower = 0;
       corners.forEach((sample, i) => {
-        const weight = this.atRow[i] + this.perColumn[i] * x;
+        const weight = this.#atRow[i] + this.#perColumn[i] * x;
         upper += weight * (sample >> 8);
         lower += weight * (sample & 255);
       });
       const whole = Math.floor(upper / det);
       const rest = 256 * (upper - whole * det) + lower;
-      this.data[place] = 256 * whole + Math.floor((2 * rest + det) / (2 * det));
-      place += this.components;
+      this.#data[place] = 256 * whole + Math.floor((2 * rest + det) / (2 * det));
+      place += this.#components;
     }
   }
 }

@@ -32,24 +32,26 @@ export function readTriangles(decoder, sides) {
 
 /** Reads the numbers of one kind, 0 or more. */
 class IndexReader {
+  #decoder;
+  #lengths = Contexts.even(LONGEST_INDEX + 1);
+  // For each length the prefixes 1, 2 and 3 of the first two bits, and 0 for the rest.
+  #bits = Contexts.even(4 * (LONGEST_INDEX + 1));
+
   /** @param {import("./range_coder.js").RangeDecoder} decoder */
   constructor(decoder) {
-    this.decoder = decoder;
-    this.lengths = Contexts.even(LONGEST_INDEX + 1);
-    // For each length the prefixes 1, 2 and 3 of the first two bits, and 0 for the rest.
-    this.bits = Contexts.even(4 * (LONGEST_INDEX + 1));
+    this.#decoder = decoder;
   }
 
   read() {
     let length = 0;
-    while (this.decoder.bit(this.lengths, length)) {
+    while (this.#decoder.bit(this.#lengths, length)) {
       length++;
       check(length <= LONGEST_INDEX, "triangles");
     }
     let value = 1;
     for (let i = 0; i < length; i++) {
       const prefix = i < 2 ? value : 0;
-      value = 2 * value + this.decoder.bit(this.bits, 4 * length + prefix);
+      value = 2 * value + this.#decoder.bit(this.#bits, 4 * length + prefix);
     }
     return value - 1;
   }

@@ -21,3 +21,13 @@ export function contextOf(canvas) {
   if (context) return context;
   throw new Error("there is no context to draw with");
 }
+
+/**
+ * WebGL 2, or null where there is none.
+ *
+ * @param {HTMLCanvasElement} canvas that has no context of another kind
+ */
+export function glOf(canvas) {
+  // Edges between triangles need no smoothing: colours are the same on both sides.
+  return canvas.getContext("webgl2", { antialias: false, depth: false });
+}

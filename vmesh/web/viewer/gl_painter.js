@@ -1,20 +1,18 @@
 /** Draws meshes with WebGL 2, whose graphics hardware interpolates the colours of the corners. */
 
-import { endsOf } from "./edges.js";
 import { fillRgba } from "./rgba.js";
 
 const VERTEX_SHADER = `#version 300 es
-uniform vec2 centre; // in lattice units
+uniform vec2 centre;
 uniform vec2 scale;
 uniform float pointSize;
 in vec2 position;
 in vec4 color;
 out vec4 tint;
 void main() {
-  // The difference first: it is exact where single precision would not hold a place at 64 times.
-  gl_Position = vec4((position - centre) * scale, 0.0, 1.0);
-  gl_PointSize = pointSize;
-  tint = color;
+gl_Position = vec4((position - centre) * scale, 0.0, 1.0);
+gl_PointSize = pointSize;
+tint = color;
 }`;
 
 /** Colours are interpolated as a file means them, and multiplied by alpha for the page. */
@@ -23,24 +21,11 @@ precision highp float;
 in vec4 tint;
 out vec4 shade;
 void main() {
-  shade = vec4(tint.rgb * tint.a, tint.a);
-}`;
-
-const INK_SHADER = `#version 300 es
-precision highp float;
-uniform vec4 ink;
-uniform bool isRound;
-out vec4 shade;
-void main() {
-  if (isRound && distance(gl_PointCoord, vec2(0.5)) > 0.5) discard;
-  shade = vec4(ink.rgb * ink.a, ink.a);
+shade = vec4(tint.rgb * tint.a, tint.a);
 }`;
 
 const POSITION = 0;
 const COLOR = 1;
-const LINE_INK = [0, 0.85, 1, 0.75];
-const RIM_INK = [0, 0, 0, 0.8];
-const DOT_INK = [1, 0.85, 0, 1];
 
 export class GlPainter {
   /** @param {WebGL2RenderingContext} gl of a canvas without anti-aliasing */
@@ -49,7 +34,6 @@ export class GlPainter {
     this.canvas = gl.canvas;
     /** @type {import("../decoder/vmesh.js").Mesh | null} */
     this.mesh = null;
-    this.nEnds = 0;
     this.resources = this.prepare();
   }
 
@@ -58,14 +42,11 @@ export class GlPainter {
     const { gl } = this;
     gl.enableVertexAttribArray(POSITION);
     gl.enableVertexAttribArray(COLOR);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     return {
       picture: programOf(gl, PICTURE_SHADER),
-      inks: programOf(gl, INK_SHADER),
       positions: gl.createBuffer(),
       colors: gl.createBuffer(),
       corners: gl.createBuffer(),
-      ends: gl.createBuffer(),
     };
   }
 
@@ -79,7 +60,6 @@ export class GlPainter {
   setMesh(mesh) {
     const { gl, resources } = this;
     this.mesh = mesh;
-    this.nEnds = 0;
     fill(gl, gl.ARRAY_BUFFER, resources.positions, Float32Array.from(mesh.vertices));
     gl.vertexAttribPointer(POSITION, 2, gl.FLOAT, false, 0, 0);
     fill(gl, gl.ARRAY_BUFFER, resources.colors, colorsOf(mesh));
@@ -91,28 +71,24 @@ export class GlPainter {
    * Draws the mesh, which must have been set.
    *
    * @param {import("./view.js").Frame} frame
-   * @param {import("./painter.js").Marks} [marks]
    */
-  draw(frame, { wireframe = false, vertices = false, pixelRatio = 1 } = {}) {
+  draw(frame) {
     const { gl, mesh, resources } = this;
     if (!mesh) return;
     if (this.canvas.width !== frame.columns) this.canvas.width = frame.columns;
     if (this.canvas.height !== frame.rows) this.canvas.height = frame.rows;
     gl.viewport(0, 0, frame.columns, frame.rows);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    gl.disable(gl.BLEND);
     this.use(resources.picture, frame, mesh.subdivision);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, resources.corners);
     gl.drawElements(gl.TRIANGLES, mesh.triangles.length, gl.UNSIGNED_INT, 0);
-    if (!wireframe && !vertices) return;
-    gl.enable(gl.BLEND);
-    this.use(resources.inks, frame, mesh.subdivision);
-    if (wireframe) this.drawEdges(mesh);
-    if (vertices) this.drawVertices(mesh, pixelRatio);
   }
 
   /**
    * Chooses a program and tells it where the picture is.
+   *
+   * The shader takes the difference to the centre first: it is exact where single precision would
+   * not hold a place at 64 times.
    *
    * @param {WebGLProgram} program
    * @param {import("./view.js").Frame} frame
@@ -128,51 +104,15 @@ export class GlPainter {
     const [clipX, clipY] = [(2 * scaleX) / (unit * columns), (-2 * scaleY) / (unit * rows)];
     gl.uniform2f(gl.getUniformLocation(program, "scale"), clipX, clipY);
   }
-
-  /** @param {import("../decoder/vmesh.js").Mesh} mesh */
-  drawEdges(mesh) {
-    const { gl, resources } = this;
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, resources.ends);
-    if (this.nEnds === 0) {
-      const ends = endsOf(mesh);
-      fill(gl, gl.ELEMENT_ARRAY_BUFFER, resources.ends, ends);
-      this.nEnds = ends.length;
-    }
-    this.setInk(LINE_INK, 1, false);
-    gl.drawElements(gl.LINES, this.nEnds, gl.UNSIGNED_INT, 0);
-  }
-
-  /**
-   * @param {import("../decoder/vmesh.js").Mesh} mesh
-   * @param {number} pixelRatio
-   */
-  drawVertices(mesh, pixelRatio) {
-    const { gl } = this;
-    for (const { ink, size } of [{ ink: RIM_INK, size: 6 }, { ink: DOT_INK, size: 4 }]) {
-      this.setInk(ink, size * pixelRatio, true);
-      gl.drawArrays(gl.POINTS, 0, mesh.vertices.length / 2);
-    }
-  }
-
-  /**
-   * @param {number[]} ink
-   * @param {number} pointSize
-   * @param {boolean} isRound
-   */
-  setInk(ink, pointSize, isRound) {
-    const { gl } = this;
-    const { inks } = this.resources;
-    gl.uniform4fv(gl.getUniformLocation(inks, "ink"), ink);
-    gl.uniform1f(gl.getUniformLocation(inks, "pointSize"), pointSize);
-    gl.uniform1i(gl.getUniformLocation(inks, "isRound"), isRound ? 1 : 0);
-  }
 }
 
 /**
+ * A program over the vertices of a mesh.
+ *
  * @param {WebGL2RenderingContext} gl
  * @param {string} fragmentShader
  */
-function programOf(gl, fragmentShader) {
+export function programOf(gl, fragmentShader) {
   const program = gl.createProgram();
   for (const { type, source } of [
     { type: gl.VERTEX_SHADER, source: VERTEX_SHADER },
@@ -195,7 +135,7 @@ function programOf(gl, fragmentShader) {
  * @param {WebGLBuffer} buffer
  * @param {Float32Array | Uint16Array | Uint32Array} array
  */
-function fill(gl, target, buffer, array) {
+export function fill(gl, target, buffer, array) {
   gl.bindBuffer(target, buffer);
   gl.bufferData(target, array, gl.STATIC_DRAW);
 }

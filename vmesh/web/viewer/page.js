@@ -4,8 +4,8 @@ import { decode } from "../decoder/vmesh.js";
 import { elementIn } from "./dom.js";
 import { bytesIn } from "./embedded.js";
 import { listenToGestures } from "./gestures.js";
-import { GlPainter } from "./gl_painter.js";
-import { painterFor } from "./painter.js";
+import { MarkingGlPainter, markingPainterFor } from "./marking_painters.js";
+import { toSrgb } from "./profile.js";
 import { View } from "./view.js";
 
 /** The marks that are switched on and off, and the keys that do so. */
@@ -21,9 +21,15 @@ class Page {
     this.zoom = elementIn(document, "#zoom", HTMLElement);
     this.marks = { wireframe: false, vertices: false };
     this.view = new View();
-    this.painter = painterFor(this.canvas);
+    this.painter = markingPainterFor(this.canvas);
     /** @type {import("../decoder/vmesh.js").Mesh | null} */
     this.mesh = null;
+    /**
+     * The file that is shown, or is to be.
+     *
+     * @type {Uint8Array | null}
+     */
+    this.asked = null;
     /** @type {number | null} */
     this.frame = null;
     this.listen();
@@ -32,7 +38,7 @@ class Page {
   listen() {
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => {
-      if (this.painter instanceof GlPainter) this.painter.restore();
+      if (this.painter instanceof MarkingGlPainter) this.painter.restore();
       this.draw();
     });
     listenToGestures(this.stage, this.view, () => this.request());
@@ -63,9 +69,11 @@ class Page {
    * @param {Uint8Array} bytes
    * @param {string} name
    */
-  show(bytes, name) {
+  async show(bytes, name) {
+    this.asked = bytes;
     try {
-      const mesh = decode(bytes);
+      const mesh = await toSrgb(decode(bytes));
+      if (this.asked !== bytes) return;
       this.painter.setMesh(mesh);
       this.mesh = mesh;
       this.view.setPicture(mesh.width, mesh.height);
@@ -73,6 +81,7 @@ class Page {
       document.title = name;
       this.failure.hidden = true;
     } catch (error) {
+      if (this.asked !== bytes) return;
       this.mesh = null;
       const { message } = /** @type {Error} */ (error);
       this.failure.textContent = `${name} cannot be shown: ${message}`;

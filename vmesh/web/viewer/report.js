@@ -3,7 +3,10 @@
 import { decode } from "../decoder/vmesh.js";
 import { elementIn } from "./dom.js";
 import { bytesIn } from "./embedded.js";
-import { paintWhole } from "./shared_painter.js";
+import { markingPainterFor } from "./marking_painters.js";
+import { SharedPainter } from "./shared_painter.js";
+
+const PAINTER = new SharedPainter(markingPainterFor);
 
 class Comparison {
   /** @param {Element} section */
@@ -42,7 +45,8 @@ class Comparison {
     const shown = Math.round(this.stage.clientWidth * devicePixelRatio);
     // The browser reduces the mesh as the photograph, but lines should not fade by that.
     const columns = wireframe ? shown : Math.max(shown, this.photographColumns);
-    paintWhole(mesh, canvas, columns, (columns * mesh.height) / mesh.width, { wireframe });
+    const rows = (columns * mesh.height) / mesh.width;
+    PAINTER.paint(mesh, canvas, columns, rows, { wireframe });
   }
 }
 

@@ -1,9 +1,8 @@
-"""What is in the pages and scripts for browsers."""
+"""What is in the pages for browsers."""
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +10,6 @@ import vmesh
 from tests.pictures import PICTURES
 from vmesh.formats.html.document import name_of, page_of
 from vmesh.mesh import Metadata
-from vmesh.web import bundle as bundling
 
 XMP = b"""<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF
 xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description
@@ -39,30 +37,3 @@ def test_a_page_refers_to_nothing_outside(mesh: vmesh.Mesh) -> None:
     text = page_of(vmesh.dumps(mesh), "A ramp")
     assert "default-src 'none'" in text
     assert not re.search(r"https?:|<link|@import|\bsrc=", text)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        'import thing from "./errors.js";\n',
-        'import { check as test } from "./errors.js";\n',
-        "export default 1;\n",
-        'export * from "./errors.js";\n',
-    ],
-)
-def test_modules_of_other_kinds_are_not_bundled(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
-) -> None:
-    (tmp_path / "entry.js").write_text(text)
-    monkeypatch.setattr(bundling, "WEB", tmp_path)
-    with pytest.raises(ValueError, match=r"entry\.js: expected named imports and exports"):
-        bundling.bundle("entry.js")
-
-
-def test_a_script_that_would_end_its_element_is_not_bundled(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "entry.js").write_text('const text = "</script>";\n')
-    monkeypatch.setattr(bundling, "WEB", tmp_path)
-    with pytest.raises(ValueError, match="end its element"):
-        bundling.bundle("entry.js")
