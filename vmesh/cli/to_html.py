@@ -30,7 +30,7 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".html", ".htm"), ".html")
 @click.option(
     "--element",
     metavar="FILE.js",
-    help="Write the script of <vmesh-image src=...> for pages of your own, and nothing else.",
+    help="Write the script of <vmesh-image src=...> for pages of your own; it needs no INPUT.",
 )
 @picture_options
 @strip_option("private")
@@ -51,10 +51,9 @@ def command(
     settings, limits = take_settings(options), take_limits(options)
     reading = take_picture_options(options)
     if element is not None:
-        if options["paths"] or options["output"] is not None:
-            raise click.UsageError("--element takes no INPUT: the script is the same for all")
         write_element(element, options["overwrite"])
-        return
+        if not options["paths"] and options["output"] is None:
+            return
     if not options["paths"]:
         raise click.UsageError("expected INPUT and OUTPUT.html, or --element FILE.js")
 
