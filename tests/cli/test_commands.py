@@ -177,14 +177,16 @@ def test_edges_of_a_drawing_are_crisp_or_trapped(file: Path, tmp_path: Path) -> 
     assert "crisp edges" in message
 
 
-def test_the_script_of_the_element_is_written_alone_or_beside_a_page(file: Path, tmp_path: Path) -> None:
+def test_the_script_of_the_element_is_written_alone_or_beside_a_page(
+    file: Path, tmp_path: Path
+) -> None:
     script = tmp_path / "vmesh-image.js"
     succeed("to-html", "--element", script)
     assert b'customElements.define("vmesh-image"' in script.read_bytes()
     script.unlink()
     succeed("to-html", file, tmp_path / "page.html", "--element", script)
     assert "vmesh-image" in script.read_text("utf-8")
-    assert "<!DOCTYPE html>" in (tmp_path / "page.html").read_text("utf-8")
+    assert "<!doctype html>" in (tmp_path / "page.html").read_text("utf-8")
     assert "OUTPUT.html" in fail(2, "to-html")
 
 
