@@ -156,7 +156,7 @@ def command(
         outcomes = run_on_cluster(plan.tasks, scheduler)
     with show_files("batch", len(plan.tasks), quiet=quiet) as report:
         done = show_outcomes(
-            noted(chain(plan.settled, outcomes), plan, journal), report, as_json=as_json
+            noted(chain(outcomes, plan.settled), plan, journal), report, as_json=as_json
         )
     if not quiet:
         tell_what_was_left(done, found.passed_over)
