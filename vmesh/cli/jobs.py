@@ -22,7 +22,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 @dataclass(frozen=True, slots=True)
 class Making:
-    """What a command makes of what.
+    """Kind of work of a command: what it makes of what.
 
     Parameters
     ----------
