@@ -38,6 +38,7 @@ class ExportOptions(TypedDict, total=False):
     tolerance: float
     merge: float
     seams: Seams
+    id_prefix: str | None
     fit: SampleArray | None
     page_width: str | None
     backend: Backend
@@ -198,6 +199,9 @@ def export(
         unless given.
     seams : {"crisp", "trapping"}
         For SVG how no seams show.
+    id_prefix : str
+        For SVG what ids begin with, a digest of the drawing unless given: two different drawings
+        may be in one HTML page.
     fit : ndarray
         For SVG the photograph whose pixels the gradients are fitted to.
     page_width : str

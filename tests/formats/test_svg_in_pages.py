@@ -1,0 +1,74 @@
+"""Several drawings in one HTML page, as a browser shows them."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import vmesh
+from tests.formats.browser import pixels_of, playwright, running
+from vmesh.arrays import UInt8Array
+from vmesh.formats.preview import svg_preview
+from vmesh.formats.svg.document import write_svg
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[playwright.Page]:
+    with running() as browser:
+        yield browser.new_page(viewport={"width": 400, "height": 500})
+
+
+@pytest.fixture(scope="module")
+def meshes(coffee: UInt8Array) -> list[vmesh.Mesh]:
+    """Two parts of a photograph, and one of them fading out."""
+    parts = [coffee[y : y + 60, 200:290] for y in (100, 250)]
+    fade = np.broadcast_to(np.linspace(0, 255, 90).astype(np.uint8), (60, 90))
+    parts.append(np.dstack([parts[0], fade]))
+    parts.append(np.dstack([parts[0], fade[:, ::-1]]))
+    return [vmesh.encode(np.ascontiguousarray(part), vertices=60) for part in parts]
+
+
+def shown(page: playwright.Page, drawings: list[str]) -> list[UInt8Array]:
+    """What a page shows of drawings, each in its own box at a place of its own."""
+    boxes = "".join(f"<div style='height:70px'>{drawing}</div>" for drawing in drawings)
+    page.set_content(f"<!doctype html><body style='background:#3a7'>{boxes}")
+    return [pixels_of(box) for box in page.locator("svg").all()]
+
+
+def shown_alone(page: playwright.Page, drawings: list[str]) -> list[UInt8Array]:
+    """What a page shows of each drawing that has it alone, at the same place."""
+    n = len(drawings)
+    return [
+        shown(page, ["" if i != alone else drawings[i] for i in range(n)])[0] for alone in range(n)
+    ]
+
+
+def drawn(mesh: vmesh.Mesh, **options: object) -> str:
+    stream = io.BytesIO()
+    write_svg(mesh, stream, **options)  # type: ignore[arg-type]
+    return stream.getvalue().decode()
+
+
+@pytest.mark.parametrize("options", [{}, {"mode": "exact"}, {"mode": "auto"}])
+def test_drawings_in_one_page_look_as_they_do_alone(
+    page: playwright.Page, meshes: list[vmesh.Mesh], options: dict[str, object]
+) -> None:
+    drawings = [drawn(mesh, **options) for mesh in meshes]
+    alone = shown_alone(page, drawings)
+    for first, second in pairwise(alone):
+        assert not np.array_equal(first, second)
+    for one, other in zip(shown(page, drawings), alone, strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_previews_in_one_notebook_look_as_they_do_alone(
+    page: playwright.Page, meshes: list[vmesh.Mesh]
+) -> None:
+    previews = [svg_preview(mesh) or "" for mesh in (*meshes, meshes[0])]
+    alone = shown_alone(page, previews)
+    for one, other in zip(shown(page, previews), alone, strict=True):
+        assert np.array_equal(one, other)
