@@ -15,6 +15,14 @@
 
 from __future__ import annotations
 
+import os
+import unicodedata
+from typing import Final
+
+# Controls, directions and other formats, halves of surrogate pairs, ends of lines and paragraphs.
+_UNSEEN: Final = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp"))
+_JOINERS: Final = "\u200c\u200d"  # Formats that languages and pictograms are written with.
+
 
 class VmeshError(Exception):
     """Base of all errors about the data that vmesh was given."""
@@ -61,8 +69,27 @@ def describe(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         return "not enough memory"
     if isinstance(error, OSError) and error.strerror and error.filename is not None:
-        return f"{error.filename}: {error.strerror}"
-    text = " ".join(str(error).split()) or type(error).__name__
+        name = error.filename
+        path = os.fsdecode(name) if isinstance(name, bytes) else name
+        return shown(f"{path}: {error.strerror}")
+    text = shown(" ".join(str(error).split())) or type(error).__name__
     if isinstance(error, VmeshError | OSError | ValueError):
         return text
     return f"{type(error).__name__}: {text}"
+
+
+def shown(text: str) -> str:
+    """A text as a line that a terminal shows and does not obey, such as the name of a file.
+
+    What moves the cursor, ends a line or turns the direction of writing is written as an escape
+    sequence of Python's, and so is a byte of a name that is no character of the system's encoding.
+    """
+    return "".join(map(_shown_character, text))
+
+
+def _shown_character(character: str) -> str:
+    if "\udc80" <= character <= "\udcff":
+        return f"\\x{ord(character) - 0xDC00:02x}"
+    if character in _JOINERS or unicodedata.category(character) not in _UNSEEN:
+        return character
+    return character.encode("unicode_escape").decode()

@@ -67,7 +67,7 @@ def test_two_sources_with_one_output_are_refused(tmp_path: Path) -> None:
 
 def test_an_output_that_would_replace_a_source_is_refused(tmp_path: Path) -> None:
     first, second = source(tmp_path, "a.png"), source(tmp_path, "a.jpg", "other")
-    with pytest.raises(ValueError, match=r"a\.png would replace .*a\.png"):
+    with pytest.raises(ValueError, match=r"a\.png would replace itself"):
         plan(first, output=tmp_path, suffixes=(".png",))
     plan(first, second, output=tmp_path / "out", suffixes=(".png",))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from vmesh.batch.sources import PICTURE_SUFFIXES, find_sources
+from vmesh.batch.sources import PICTURE_SUFFIXES, PICTURES, find_sources
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def photos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def names(*arguments: str, output: str = "out") -> list[tuple[str, str]]:
     """Path and name of each source."""
-    found = find_sources(arguments, output)
+    found = find_sources(arguments, output, PICTURES)
     return [(source.path.as_posix(), source.name.as_posix()) for source in found]
 
 

@@ -6,6 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from vmesh.cli.main import main
+
 
 def run(*arguments: str | Path, given: bytes = b"") -> subprocess.CompletedProcess[bytes]:
     """The program with these arguments and this standard input."""
@@ -31,3 +35,38 @@ def fail(status: int, *arguments: str | Path, given: bytes = b"") -> str:
         assert text.startswith("vmesh: ")
         assert text.count("\n") == 1
     return text
+
+
+class Program:
+    """The program in this process, which spares the time of starting another one."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+        self._monkeypatch = monkeypatch
+        self._capfd = capfd
+
+    def run(self, *arguments: str | Path) -> tuple[int, str, str]:
+        """Status, and what is written to standard output and standard error."""
+        self._monkeypatch.setattr(sys, "argv", ["vmesh", *map(str, arguments)])
+        self._capfd.readouterr()
+        try:
+            main()
+            status = 0
+        except SystemExit as stop:
+            assert stop.code is None or isinstance(stop.code, int)
+            status = stop.code or 0
+        return status, *self._capfd.readouterr()
+
+    def succeed(self, *arguments: str | Path) -> str:
+        """What is written to standard output when the work is done in silence."""
+        status, output, told = self.run(*arguments)
+        assert (status, told) == (0, "")
+        return output
+
+    def fail(self, status: int, *arguments: str | Path) -> str:
+        """What is said of a failure."""
+        found, _, told = self.run(*arguments)
+        assert found == status, told
+        assert "Traceback" not in told
+        if status == 1:
+            assert all(line.startswith("vmesh: ") for line in told.splitlines())
+        return told

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from vmesh.batch.sources import Source
+from vmesh.batch.targets import check_targets
 from vmesh.batch.task import Outcome, Recipe, Task
 from vmesh.codec.layout import FILE_SUFFIX
 
@@ -32,7 +33,7 @@ def make_plan(
         (source.path, [Path(output, source.name).with_suffix(suffix) for suffix in suffixes])
         for source in sources
     ]
-    _check_targets(wanted)
+    check_targets((str(path), map(str, targets)) for path, targets in wanted)
     tasks, skipped = [], []
     for path, targets in wanted:
         current = [] if force else [target for target in targets if _is_current(target, path)]
@@ -43,20 +44,6 @@ def make_plan(
         else:
             skipped.append(Outcome(str(path), "skipped"))
     return tasks, skipped
-
-
-def _check_targets(wanted: list[tuple[Path, list[Path]]]) -> None:
-    """Refuse outputs that two sources share, or that are themselves a source."""
-    makers: dict[Path, Path] = {}
-    for source, targets in wanted:
-        for target in targets:
-            other = makers.setdefault(target.resolve(), source)
-            if other is not source:
-                raise ValueError(f"{other} and {source} would both be written to {target}")
-    for source, _ in wanted:
-        maker = makers.get(source.resolve())
-        if maker is not None:
-            raise ValueError(f"an output of {maker} would replace {source}, which is a source too")
 
 
 def _is_current(target: Path, source: Path) -> bool:

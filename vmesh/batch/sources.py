@@ -1,4 +1,4 @@
-"""Sources of a batch: files that are named, files in folders, files of patterns."""
+"""Sources of a command: files that are named, files in folders, files of patterns."""
 
 from __future__ import annotations
 
@@ -9,12 +9,39 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from vmesh.codec.layout import FILE_SUFFIX
+from vmesh.errors import shown
+
 # What is taken from a folder; a file that is named, or of a pattern, is taken whatever its name.
 PICTURE_SUFFIXES: Final = frozenset(
     (
         *(".png", ".jpg", ".jpeg", ".jpe", ".jfif", ".webp", ".avif", ".tif", ".tiff", ".gif"),
         *(".bmp", ".ppm", ".pgm", ".pbm", ".pnm", ".jp2", ".j2k", ".jpx", ".tga", ".pcx", ".qoi"),
     )
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """Files that are taken from a folder.
+
+    Parameters
+    ----------
+    name : str
+        What they are, for messages.
+    suffixes : frozenset of str
+        Endings of their names, in small letters.
+    """
+
+    name: str
+    suffixes: frozenset[str]
+
+
+PICTURES: Final = Kind("pictures", PICTURE_SUFFIXES)
+MESHES: Final = Kind(f"{FILE_SUFFIX} files", frozenset((FILE_SUFFIX,)))
+# Of a picture and a mesh that differ in their endings alone, the picture.
+PICTURES_AND_MESHES: Final = Kind(
+    f"pictures and {FILE_SUFFIX} files", PICTURES.suffixes | MESHES.suffixes
 )
 
 
@@ -35,11 +62,12 @@ class Source:
     name: Path
 
 
-def find_sources(arguments: Iterable[str], output: str) -> list[Source]:
+def find_sources(arguments: Iterable[str], output: str | None, kind: Kind) -> list[Source]:
     """Files that some arguments stand for, each once, in the order of the arguments.
 
-    Folders are searched with the folders below them, in the order of names, for pictures by the
-    ending of their names. What is hidden, links to folders and the folder `output` are passed over.
+    Folders are searched with the folders below them, in the order of names, for files of a kind by
+    the ending of their names. What is hidden, links to folders and the folder `output` are passed
+    over, and so is a mesh beside the picture that it seems to be of.
 
     Raises
     ------
@@ -52,14 +80,14 @@ def find_sources(arguments: Iterable[str], output: str) -> list[Source]:
     found = {
         (source.path.resolve(), source.name): source
         for argument in named
-        for source in _expand(argument, output)
+        for source in _expand(argument, output, kind)
     }
     if not found:
-        raise ValueError(f"no pictures were found in {', '.join(named)}")
+        raise ValueError(f"no {kind.name} were found in {', '.join(map(shown, named))}")
     return list(found.values())
 
 
-def _expand(argument: str, output: str) -> Iterator[Source]:
+def _expand(argument: str, output: str | None, kind: Kind) -> Iterator[Source]:
     """Files that one argument stands for.
 
     A pattern that nothing matches, or a file that is not there, is a source that cannot be read.
@@ -73,7 +101,7 @@ def _expand(argument: str, output: str) -> Iterator[Source]:
         matches = [Path(match) for match in matched] or [named]
         base = _fixed_part(named)
     for match in matches:
-        for path in _pictures_in(match, output) if match.is_dir() else [match]:
+        for path in _files_in(match, output, kind) if match.is_dir() else [match]:
             yield Source(path, path.relative_to(base))
 
 
@@ -83,18 +111,20 @@ def _fixed_part(pattern: Path) -> Path:
     return Path(*pattern.parts[:n_fixed])
 
 
-def _pictures_in(folder: Path, output: str) -> Iterator[Path]:
-    """Pictures in a folder and below it, but not in `output` below it."""
-    left_out = Path(output).resolve()
+def _files_in(folder: Path, output: str | None, kind: Kind) -> Iterator[Path]:
+    """Files of a kind in a folder and below it, but not in `output` below it."""
+    left_out = None if output is None else Path(output).resolve()
     for place, folders, files in os.walk(folder, onerror=_refuse):
         folders[:] = sorted(
             name
             for name in folders
             if not name.startswith(".") and Path(place, name).resolve() != left_out
         )
-        for name in sorted(files):
-            path = Path(place, name)
-            if not name.startswith(".") and path.suffix.lower() in PICTURE_SUFFIXES:
+        paths = [Path(place, name) for name in sorted(files) if not name.startswith(".")]
+        taken = [path for path in paths if path.suffix.lower() in kind.suffixes]
+        pictured = {path.stem for path in taken if path.suffix.lower() != FILE_SUFFIX}
+        for path in taken:
+            if path.suffix.lower() != FILE_SUFFIX or path.stem not in pictured:
                 yield path
 
 

@@ -15,7 +15,7 @@ import click
 from vmesh.batch.cluster import run_on_cluster
 from vmesh.batch.plan import make_plan
 from vmesh.batch.processes import run_in_processes
-from vmesh.batch.sources import find_sources
+from vmesh.batch.sources import PICTURES, PICTURES_AND_MESHES, find_sources
 from vmesh.batch.task import Outcome, Recipe
 from vmesh.cli.failures import end_with
 from vmesh.cli.limits import limit_options, take_limits
@@ -28,7 +28,7 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_files
-from vmesh.cli.streams import STANDARD, check_folder
+from vmesh.cli.streams import STANDARD, make_folder, tell
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS
@@ -123,7 +123,8 @@ def command(
             raise click.UsageError("-j is for this machine, --scheduler for others")
         # The workers run in other folders.
         sources, output = tuple(map(absolute, sources)), absolute(output)
-    found = find_sources(sources, output)
+    kind = PICTURES if FILE_SUFFIX in suffixes else PICTURES_AND_MESHES
+    found = find_sources(sources, output, kind)
     tasks, skipped = make_plan(found, output, suffixes, recipe, force=force)
     make_folder(output)
     if scheduler is None:
@@ -140,18 +141,12 @@ def absolute(path: str) -> str:
     return str(Path(path).absolute())
 
 
-def make_folder(path: str) -> None:
-    """Make a folder, or refuse one that cannot be written."""
-    Path(path).mkdir(parents=True, exist_ok=True)
-    check_folder(path)
-
-
 def show_outcomes(outcomes: Iterable[Outcome], report: Progress, *, as_json: bool) -> list[Outcome]:
     """Tell outcomes as they come; returns those that failed."""
     failed = []
     for outcome in outcomes:
         if as_json:
-            click.echo(json.dumps(asdict(outcome)))
+            tell(json.dumps(asdict(outcome)))
         if outcome.status != "skipped":
             report(Path(outcome.source).name)
         if outcome.status == "failed":

@@ -13,7 +13,7 @@ from vmesh.cli.options import (
     picture_options,
     take_picture_options,
 )
-from vmesh.cli.streams import read_mesh_or_photograph
+from vmesh.cli.streams import read_mesh_or_photograph, tell
 
 if TYPE_CHECKING:
     from vmesh.arrays import UInt8Array
@@ -42,11 +42,11 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
     if as_json:
         # JSON has no infinity: equal pictures have no PSNR.
         finite = {key: x if x != float("inf") else None for key, x in figures.items()}
-        click.echo(json.dumps(finite))
+        tell(json.dumps(finite))
     else:
-        click.echo(f"PSNR RGB  {figures['psnr_rgb']:.3f} dB")
-        click.echo(f"PSNR Y    {figures['psnr_y']:.3f} dB")
-        click.echo(f"SSIM      {figures['ssim']:.5f}")
+        tell(f"PSNR RGB  {figures['psnr_rgb']:.3f} dB")
+        tell(f"PSNR Y    {figures['psnr_y']:.3f} dB")
+        tell(f"SSIM      {figures['ssim']:.5f}")
 
 
 def _pixels(

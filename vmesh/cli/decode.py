@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import click
 
+from vmesh.batch.sources import MESHES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import quiet_option, strip_option
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, check_suffix, read_mesh, write_output
+from vmesh.cli.streams import STANDARD, read_mesh
 from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS, RASTER_SUFFIXES, ExportOptions, format_of, write_mesh
-from vmesh.limits import MAX_SIDE
+from vmesh.limits import MAX_SIDE, Limits
 
 
 class MatrixType(click.ParamType[tuple[float, ...]]):
@@ -33,9 +35,11 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
         return numbers
 
 
+_MAKING: Final = Making(MESHES, RASTER_SUFFIXES, ".png")
+
+
 @click.command("decode")
-@click.argument("source", metavar="INPUT.vmesh")
-@click.argument("target", metavar="OUTPUT")
+@job_arguments("INPUT.vmesh", "OUTPUT")
 @click.option("--scale", type=click.FloatRange(0, min_open=True), help="Pixels per canvas pixel.")
 @click.option("--width", type=click.IntRange(1, MAX_SIDE), help="Width of the result in pixels.")
 @click.option("--height", type=click.IntRange(1, MAX_SIDE), help="Height of the result in pixels.")
@@ -64,8 +68,6 @@ class MatrixType(click.ParamType[tuple[float, ...]]):
 @limit_options
 @quiet_option
 def command(
-    source: str,
-    target: str,
     scale: float | None,
     width: int | None,
     height: int | None,
@@ -77,33 +79,50 @@ def command(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Turn a .vmesh file into pixels: PNG, JPEG, WebP, TIFF or PAM, by the name of OUTPUT.
+    """Turn .vmesh files into pixels: PNG, JPEG, WebP, TIFF or PAM, by the name of OUTPUT.
+
+    Without OUTPUT it is named after INPUT, with .png at its end. With -o DIR there may be many
+    INPUTs, also folders, and each becomes a PNG there. Standard output gets a PNG.
 
     The size is that of the photograph, or --scale, --width, --height, --longest-side say it; one
-    side keeps the proportions. Standard output gets a PNG.
+    side keeps the proportions.
     """
     limits = take_limits(options)
-    check_suffix(target, RASTER_SUFFIXES)
     if sum(value is not None for value in (scale, width or height, longest_side)) > 1:
         raise click.UsageError("expected --scale, --longest-side or a size, not several of them")
     if longest_side and transform:
         raise click.UsageError("expected no --transform with --longest-side")
-    wanted = FORMATS[".png"] if target == STANDARD else format_of(target)
-    with show_progress("decoding", 2, quiet=quiet) as report:
+    chosen: ExportOptions = {
+        "scale": scale,
+        "width": width,
+        "height": height,
+        "transform": transform,
+        "supersample": supersample,
+        "strip": strip,
+    }
+
+    def work(job: Job) -> None:
+        decode(job, limits, longest_side, chosen, allow_partial=allow_partial, quiet=quiet)
+
+    take_jobs(options, _MAKING).run(work)
+
+
+def decode(
+    job: Job,
+    limits: Limits,
+    longest_side: int | None,
+    options: ExportOptions,
+    *,
+    allow_partial: bool,
+    quiet: bool,
+) -> None:
+    """Draw one mesh."""
+    wanted = FORMATS[".png"] if job.target == STANDARD else format_of(job.target)
+    with show_progress(f"decoding{job.place}", 2, quiet=quiet) as report:
         report("reading")
-        mesh = read_mesh(source, limits, allow_partial=allow_partial)
+        mesh = read_mesh(job.source, limits, allow_partial=allow_partial)
+        chosen = options.copy()
         if longest_side:
-            is_wide = mesh.width >= mesh.height
-            width, height = (longest_side, None) if is_wide else (None, longest_side)
+            chosen["width" if mesh.width >= mesh.height else "height"] = longest_side
         report("drawing")
-        chosen: ExportOptions = {
-            "scale": scale,
-            "width": width,
-            "height": height,
-            "transform": transform,
-            "supersample": supersample,
-            "strip": strip,
-        }
-        write_output(
-            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **chosen)
-        )
+        job.write(lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **chosen))

@@ -7,15 +7,16 @@ from typing import Final
 
 import click
 
+from vmesh.cli.jobs import run_inputs
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.streams import read_input, read_mesh
+from vmesh.cli.streams import read_input, read_mesh, tell
 from vmesh.codec.hex_dump import Field, annotate
 
 _BYTES_PER_LINE: Final = 16
 
 
 @click.command("dump")
-@click.argument("source", metavar="INPUT.vmesh")
+@click.argument("sources", metavar="INPUT.vmesh...", nargs=-1, required=True)
 @click.option(
     "--mesh",
     "as_mesh",
@@ -31,16 +32,25 @@ _BYTES_PER_LINE: Final = 16
     help="Most bytes to print of each field.",
 )
 @limit_options
-def command(source: str, as_mesh: bool, n_bytes: int, **options: int) -> None:
-    """Print the bytes of a .vmesh file, field by field, also if it is damaged."""
-    if as_mesh:
-        from vmesh.codec.text import mesh_text
+def command(sources: tuple[str, ...], as_mesh: bool, n_bytes: int, **options: int) -> None:
+    """Print the bytes of .vmesh files, field by field, also if they are damaged.
 
-        click.echo(mesh_text(read_mesh(source, take_limits(options))), nl=False)
-    else:
+    Folders are searched for .vmesh files. Of several files each has a heading.
+    """
+    limits = take_limits(options)
+
+    def work(source: str, heading: str) -> None:
+        if as_mesh:
+            from vmesh.codec.text import mesh_text
+
+            tell(heading + mesh_text(read_mesh(source, limits)), is_line=False)
+            return
+        tell(heading, is_line=False)
         for field in annotate(read_input(source)):
             for line in _lines(field, n_bytes):
-                click.echo(line)
+                tell(line)
+
+    run_inputs(sources, work)
 
 
 def _lines(field: Field, n_bytes: int) -> Iterator[str]:

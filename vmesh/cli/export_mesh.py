@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import click
 
+from vmesh.batch.sources import PICTURES_AND_MESHES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
@@ -14,20 +16,21 @@ from vmesh.cli.options import (
     take_picture_options,
     take_settings,
 )
-from vmesh.cli.streams import STANDARD, check_suffix
+from vmesh.cli.streams import STANDARD
 from vmesh.cli.vector import convert
 from vmesh.formats.registry import MESH_SUFFIXES, ExportOptions, format_of
 
+_MAKING: Final = Making(PICTURES_AND_MESHES, MESH_SUFFIXES)
+
 
 @click.command("export")
-@click.argument("source", metavar="INPUT")
-@click.argument("target", metavar="OUTPUT")
+@job_arguments("INPUT", "OUTPUT", has_folder=False)
 @click.option("--ascii", is_flag=True, help="PLY as text instead of binary.")
 @picture_options
 @encoder_options
 @limit_options
 @quiet_option
-def command(source: str, target: str, ascii: bool, quiet: bool, **options: Any) -> None:
+def command(ascii: bool, quiet: bool, **options: Any) -> None:
     """Turn a .vmesh file, or a photograph, into a mesh for other programs, by the name of OUTPUT.
 
     PLY, OBJ and glTF (.glb) with a colour at every vertex need trimesh: pip install trimesh. A
@@ -36,10 +39,15 @@ def command(source: str, target: str, ascii: bool, quiet: bool, **options: Any) 
     """
     settings, limits = take_settings(options), take_limits(options)
     reading = take_picture_options(options)
+    jobs = take_jobs(options, _MAKING)
+    target = jobs.jobs[0].target
     if target == STANDARD:
         raise click.UsageError("expected a name for OUTPUT: its ending says the format")
-    check_suffix(target, MESH_SUFFIXES)
     chosen: ExportOptions = {"ascii": True} if ascii else {}
     if ascii and not target.lower().endswith(".ply"):
         raise click.UsageError("--ascii is for PLY")
-    convert(source, target, format_of(target), settings, reading, limits, quiet=quiet, **chosen)
+
+    def work(job: Job) -> None:
+        convert(job, format_of(target), settings, reading, limits, quiet=quiet, **chosen)
+
+    jobs.run(work)

@@ -7,14 +7,16 @@ from typing import Any
 
 import click
 
+from vmesh.cli.jobs import run_inputs
 from vmesh.cli.limits import limit_options, take_limits
-from vmesh.cli.streams import read_input
+from vmesh.cli.streams import read_input, tell
 from vmesh.codec.summary import describe
-from vmesh.errors import FormatError, LimitError
+from vmesh.errors import FormatError, LimitError, shown
+from vmesh.limits import Limits
 
 
 @click.command("info")
-@click.argument("source", metavar="INPUT.vmesh")
+@click.argument("sources", metavar="INPUT.vmesh...", nargs=-1, required=True)
 @click.option(
     "--parts",
     "by_parts",
@@ -23,16 +25,32 @@ from vmesh.errors import FormatError, LimitError
 )
 @click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")
 @limit_options
-def command(source: str, by_parts: bool, as_json: bool, **options: int) -> None:
-    """Say what is in a .vmesh file: its size, its mesh, and the bytes of each part."""
-    data, limits = read_input(source), take_limits(options)
+def command(sources: tuple[str, ...], by_parts: bool, as_json: bool, **options: int) -> None:
+    """Say what is in .vmesh files: their size, their mesh, and the bytes of each part.
+
+    Folders are searched for .vmesh files. Of several files each has a heading, or its line of JSON
+    a source. What cannot be read is told at the end, and the status is 1.
+    """
+    limits = take_limits(options)
+
+    def work(source: str, heading: str) -> None:
+        figures = figures_of(source, limits, by_parts=by_parts)
+        if as_json:
+            tell(json.dumps({"source": source} | figures if heading else figures))
+        else:
+            tell(heading + _table(figures))
+
+    run_inputs(sources, work)
+
+
+def figures_of(source: str, limits: Limits, *, by_parts: bool) -> dict[str, Any]:
+    """Figures of a file; errors name it."""
     try:
-        figures = describe(data, by_parts, limits)
+        return describe(read_input(source), by_parts, limits)
     except FormatError as error:
-        raise FormatError(error.code, f"{source}: {error.message}", error.offset) from None
+        raise FormatError(error.code, f"{shown(source)}: {error.message}", error.offset) from None
     except LimitError as error:
-        raise LimitError(f"{source}: {error}") from None
-    click.echo(json.dumps(figures) if as_json else _table(figures))
+        raise LimitError(f"{shown(source)}: {error}") from None
 
 
 def _table(figures: dict[str, Any]) -> str:

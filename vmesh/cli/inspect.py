@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from vmesh.batch.sources import PICTURES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
@@ -17,11 +19,13 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, check_suffix, read_photograph, write_output
+from vmesh.cli.streams import STANDARD, read_photograph
 from vmesh.inspection.sheet import SHEET_SUFFIXES
 
 if TYPE_CHECKING:
     from vmesh.inspection.region import Region
+
+_MAKING: Final = Making(PICTURES, SHEET_SUFFIXES)
 
 VIEWS = ("original", "salience", "points", "mesh", "render", "error", "sheet")
 
@@ -34,8 +38,7 @@ def _region_of(text: str) -> Region:
 
 
 @click.command("inspect")
-@click.argument("source", metavar="INPUT")
-@click.argument("target", metavar="OUTPUT")
+@job_arguments("INPUT", "OUTPUT", has_folder=False)
 @click.option(
     "--show",
     type=click.Choice(VIEWS),
@@ -59,8 +62,6 @@ def _region_of(text: str) -> Region:
 @limit_options
 @quiet_option
 def command(
-    source: str,
-    target: str,
     show: str,
     zoom: str | None,
     scale: float | None,
@@ -74,25 +75,28 @@ def command(
     region = None if zoom is None else _region_of(zoom)
     settings, limits = take_settings(options), take_limits(options)
     reading = take_picture_options(options)
-    check_suffix(target, SHEET_SUFFIXES)
-    suffix = ".png" if target == STANDARD else Path(target).suffix.lower()
+    jobs = take_jobs(options, _MAKING)
     from vmesh.encoder.pipeline import count_steps
     from vmesh.inspection.sheet.files import write_sheet
     from vmesh.inspection.sheets import stages_sheet, view_sheet
     from vmesh.inspection.stages import inspect_encoding
 
-    with show_progress("inspecting", count_steps(settings) + 2, quiet=quiet) as report:
-        report("reading")
-        picture = read_photograph(source, reading, limits)
-        if region is not None:
-            region.check_within(picture.array.shape[1], picture.array.shape[0])
-        found = inspect_encoding(
-            picture.array, settings, metadata=picture.metadata, limits=limits, progress=report
-        )
-        report("drawing")
-        if show == "sheet":
-            title = "photograph" if source == STANDARD else Path(source).name
-            sheet = stages_sheet(found, title, region, scale)
-        else:
-            sheet = view_sheet(found, show, region, scale)
-        write_output(target, lambda stream: write_sheet(sheet, stream, suffix, limits=limits))
+    def work(job: Job) -> None:
+        suffix = ".png" if job.target == STANDARD else Path(job.target).suffix.lower()
+        with show_progress("inspecting", count_steps(settings) + 2, quiet=quiet) as report:
+            report("reading")
+            picture = read_photograph(job.source, reading, limits)
+            if region is not None:
+                region.check_within(picture.array.shape[1], picture.array.shape[0])
+            found = inspect_encoding(
+                picture.array, settings, metadata=picture.metadata, limits=limits, progress=report
+            )
+            report("drawing")
+            if show == "sheet":
+                title = "photograph" if job.source == STANDARD else Path(job.source).name
+                sheet = stages_sheet(found, title, region, scale)
+            else:
+                sheet = view_sheet(found, show, region, scale)
+            job.write(lambda stream: write_sheet(sheet, stream, suffix, limits=limits))
+
+    jobs.run(work)

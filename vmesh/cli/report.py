@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from vmesh.cli.failures import end_with
+from vmesh.batch.targets import check_targets
+from vmesh.cli.failures import FAILURES, end_with
+from vmesh.cli.jobs import Job, overwrite_option
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
@@ -17,8 +19,8 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, check_folder, check_suffix, read_photograph, write_output
-from vmesh.errors import VmeshError, describe
+from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
+from vmesh.errors import describe
 from vmesh.progress import Progress
 
 if TYPE_CHECKING:
@@ -30,11 +32,18 @@ if TYPE_CHECKING:
 @click.command("report")
 @click.argument("sources", metavar="INPUT...", nargs=-1, required=True)
 @click.option("-o", "--output", "target", metavar="OUTPUT.html", required=True, help="The page.")
+@overwrite_option
 @picture_options
 @encoder_options
 @limit_options
 @quiet_option
-def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) -> None:
+def command(
+    sources: tuple[str, ...],
+    target: str,
+    overwrite: bool | None,
+    quiet: bool,
+    **options: Any,
+) -> None:
     """Compare photographs with their meshes and with other codecs, on one page.
 
     The page needs nothing else: the photograph and its mesh side by side, a plot of PSNR over bytes
@@ -47,7 +56,9 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
     reading = take_picture_options(options)
     check_suffix(target, (".html", ".htm"))
     if target != STANDARD:
-        check_folder(str(Path(target).parent))
+        check_targets([(sources[0], [target]), *((source, ()) for source in sources[1:])])
+    page = Job(sources[0], target, overwrite)
+    page.check()
     from vmesh.report.page import page_of
     from vmesh.report.plot import check_matplotlib
     from vmesh.report.study import count_study_steps
@@ -60,11 +71,11 @@ def command(sources: tuple[str, ...], target: str, quiet: bool, **options: Any) 
         for number, source in enumerate(sources):
             try:
                 sections.append(make_section(source, number, settings, reading, limits, report))
-            except (VmeshError, OSError, ValueError, MemoryError) as error:
+            except FAILURES as error:
                 failures.append((source, describe(error)))
         if sections:
             report("writing")
-            write_output(target, lambda stream: stream.write(page_of(sections)))
+            page.write(lambda stream: stream.write(page_of(sections)))
     end_with(failures)
 
 

@@ -7,15 +7,16 @@ import io
 import os
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 import click
 
 from vmesh.codec.layout import FILE_SUFFIX, is_vmesh
-from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
-from vmesh.files import atomic_output
+from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning, shown
+from vmesh.files import Times, atomic_output
 
 if TYPE_CHECKING:
     from vmesh.formats.picture.options import PictureOptions
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from vmesh.mesh import Mesh
 
 STANDARD = "-"
+STANDARD_OUTPUT: Final = "standard output"
 
 
 def read_input(path: str) -> bytes:
@@ -35,24 +37,53 @@ def read_input(path: str) -> bytes:
     return sys.stdin.buffer.read()
 
 
-def write_output(path: str, write: Callable[[BinaryIO], object]) -> None:
+def write_output(
+    path: str,
+    write: Callable[[BinaryIO], object],
+    *,
+    replace: bool = True,
+    times: Times | None = None,
+) -> None:
     """Let `write` fill a file, which takes its name when it is whole, or standard output."""
     if path == STANDARD:
         if sys.stdout is None:
             raise OSError("standard output is closed")
         buffer = io.BytesIO()
         write(buffer)
-        sys.stdout.buffer.write(buffer.getvalue())
-        sys.stdout.buffer.flush()
+        with _standard_output():
+            sys.stdout.buffer.write(buffer.getvalue())
+            sys.stdout.buffer.flush()
         return
-    with atomic_output(path) as stream:
+    with atomic_output(path, replace=replace, times=times) as stream:
         write(stream)
+
+
+def tell(text: str, *, is_line: bool = True) -> None:
+    """Print what a command was asked for on standard output."""
+    with _standard_output():
+        click.echo(text, nl=is_line)
+
+
+@contextmanager
+def _standard_output() -> Iterator[None]:
+    """Errors of the system in the block name standard output."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = STANDARD_OUTPUT
+        raise
 
 
 def check_suffix(path: str, suffixes: tuple[str, ...]) -> None:
     """Refuse an output whose name does not end in one of `suffixes`."""
     if path != STANDARD and Path(path).suffix.lower() not in suffixes:
-        raise click.UsageError(f"{path}: expected a name that ends in {', '.join(suffixes)}")
+        raise click.UsageError(f"{shown(path)}: expected a name that ends in {', '.join(suffixes)}")
+
+
+def make_folder(path: str) -> None:
+    """Make a folder, or refuse one that cannot be written."""
+    Path(path).mkdir(parents=True, exist_ok=True)
+    check_folder(path)
 
 
 def check_folder(path: str) -> None:
@@ -68,7 +99,7 @@ def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh
         warnings.simplefilter("always", PartialFileWarning)
         mesh = _mesh_of(read_input(path), path, limits, allow_partial=allow_partial)
     for warning in caught:
-        click.echo(f"vmesh: {path}: {warning.message}", err=True)
+        click.echo(f"vmesh: {shown(path)}: {warning.message}", err=True)
     return mesh
 
 
@@ -76,7 +107,7 @@ def read_photograph(path: str, options: PictureOptions, limits: Limits) -> Pictu
     """The photograph in an image file; its notes are told on standard error."""
     data = read_input(path)
     if is_vmesh(data):
-        raise ImageError(f"{path}: this is a .vmesh file, a photograph is needed")
+        raise ImageError(f"{shown(path)}: this is a .vmesh file, a photograph is needed")
     return _photograph_of(data, path, options, limits)
 
 
@@ -94,20 +125,20 @@ def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = Fa
     try:
         return loads(data, limits=limits, allow_partial=allow_partial)
     except FormatError as error:
-        raise FormatError(error.code, f"{path}: {error.message}", error.offset) from None
+        raise FormatError(error.code, f"{shown(path)}: {error.message}", error.offset) from None
     except LimitError as error:
-        raise LimitError(f"{path}: {error}") from None
+        raise LimitError(f"{shown(path)}: {error}") from None
 
 
 def _photograph_of(data: bytes, path: str, options: PictureOptions, limits: Limits) -> Picture:
     from vmesh.formats.picture.picture import read_picture
 
     if not data:
-        raise ImageError(f"{path}: the file is empty")
+        raise ImageError(f"{shown(path)}: the file is empty")
     try:
         picture = read_picture(io.BytesIO(data), options=options, limits=limits)
     except (ImageError, LimitError) as error:
-        raise type(error)(f"{path}: {error}") from None
+        raise type(error)(f"{shown(path)}: {error}") from None
     for note in picture.notes:
-        click.echo(f"vmesh: {path}: {note}", err=True)
+        click.echo(f"vmesh: {shown(path)}: {note}", err=True)
     return picture

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import click
 
+from vmesh.batch.sources import PICTURES_AND_MESHES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
@@ -15,15 +17,16 @@ from vmesh.cli.options import (
     take_picture_options,
     take_settings,
 )
-from vmesh.cli.streams import check_suffix, write_output
+from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
 from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS
 
+_MAKING: Final = Making(PICTURES_AND_MESHES, (".html", ".htm"), ".html")
+
 
 @click.command("to-html")
-@click.argument("source", metavar="INPUT", required=False)
-@click.argument("target", metavar="OUTPUT.html", required=False)
+@job_arguments("INPUT", "OUTPUT.html", is_required=False)
 @click.option(
     "--element",
     metavar="FILE.js",
@@ -35,33 +38,38 @@ from vmesh.formats.registry import FORMATS
 @limit_options
 @quiet_option
 def command(
-    source: str | None,
-    target: str | None,
     element: str | None,
     strip: Strip | None,
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Turn a .vmesh file, or a photograph, into one HTML file that shows it in a browser.
+    """Turn .vmesh files, or photographs, into HTML files that show them in a browser, each alone.
 
-    The options of the encoder apply to photographs.
+    Without OUTPUT.html it is named after INPUT, with .html at its end. With -o DIR there may be
+    many INPUTs, also folders. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
     reading = take_picture_options(options)
     if element is not None:
-        if source is not None:
+        if options["paths"] or options["output"] is not None:
             raise click.UsageError("--element takes no INPUT: the script is the same for all")
-        write_element(element)
+        write_element(element, options["overwrite"])
         return
-    if source is None or target is None:
+    if not options["paths"]:
         raise click.UsageError("expected INPUT and OUTPUT.html, or --element FILE.js")
-    check_suffix(target, (".html", ".htm"))
-    convert(source, target, FORMATS[".html"], settings, reading, limits, quiet=quiet, strip=strip)
+
+    def work(job: Job) -> None:
+        html = FORMATS[".html"]
+        convert(job, html, settings, reading, limits, quiet=quiet, strip=strip)
+
+    take_jobs(options, _MAKING).run(work)
 
 
-def write_element(target: str) -> None:
+def write_element(target: str, overwrite: bool | None) -> None:
     """Write the script of the custom element."""
     check_suffix(target, (".js", ".mjs"))
     from vmesh.formats.html.document import element_script
 
-    write_output(target, lambda stream: stream.write(element_script().encode()))
+    job = Job("", target, overwrite)
+    job.check()
+    job.write(lambda stream: stream.write(element_script().encode()))

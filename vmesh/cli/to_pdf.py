@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from vmesh.batch.sources import PICTURES_AND_MESHES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
@@ -16,7 +18,6 @@ from vmesh.cli.options import (
     take_picture_options,
     take_settings,
 )
-from vmesh.cli.streams import check_suffix
 from vmesh.cli.vector import convert
 from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.pdf.page_size import points_of
@@ -26,9 +27,11 @@ if TYPE_CHECKING:
     from vmesh.formats.pdf.document import Backend, Mode
 
 
+_MAKING: Final = Making(PICTURES_AND_MESHES, (".pdf",), ".pdf")
+
+
 @click.command("to-pdf")
-@click.argument("source", metavar="INPUT")
-@click.argument("target", metavar="OUTPUT")
+@job_arguments("INPUT", "OUTPUT")
 @click.option(
     "--mode",
     type=click.Choice(("exact",)),
@@ -55,8 +58,6 @@ if TYPE_CHECKING:
 @limit_options
 @quiet_option
 def command(
-    source: str,
-    target: str,
     mode: Mode,
     page_width: str | None,
     backend: Backend,
@@ -64,23 +65,26 @@ def command(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Turn a .vmesh file, or a photograph, into a PDF page.
+    """Turn .vmesh files, or photographs, into PDF, a page each.
 
-    The options of the encoder apply to photographs.
+    Without OUTPUT it is named after INPUT, with .pdf at its end. With -o DIR there may be many
+    INPUTs, also folders. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
-    check_suffix(target, (".pdf",))
-    convert(
-        source,
-        target,
-        FORMATS[".pdf"],
-        settings,
-        reading,
-        limits,
-        quiet=quiet,
-        strip=strip,
-        mode=mode,
-        page_width=page_width,
-        backend=backend,
-    )
+    reading, jobs = take_picture_options(options), take_jobs(options, _MAKING)
+
+    def work(job: Job) -> None:
+        convert(
+            job,
+            FORMATS[".pdf"],
+            settings,
+            reading,
+            limits,
+            quiet=quiet,
+            strip=strip,
+            mode=mode,
+            page_width=page_width,
+            backend=backend,
+        )
+
+    jobs.run(work)

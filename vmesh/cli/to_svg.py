@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import click
 
+from vmesh.batch.sources import PICTURES_AND_MESHES
+from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
@@ -16,17 +18,18 @@ from vmesh.cli.options import (
     take_picture_options,
     take_settings,
 )
-from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
+from vmesh.cli.streams import STANDARD, read_photograph
 from vmesh.cli.vector import convert
 from vmesh.formats.metadata.privacy import Strip
 from vmesh.formats.registry import FORMATS, format_of
 from vmesh.formats.svg.size import parse_length
 from vmesh.formats.svg.style import Mode, Seams, Style
 
+_MAKING: Final = Making(PICTURES_AND_MESHES, (".svg", ".svgz"), ".svg")
+
 
 @click.command("to-svg")
-@click.argument("source", metavar="INPUT")
-@click.argument("target", metavar="OUTPUT")
+@job_arguments("INPUT", "OUTPUT")
 @click.option(
     "--mode",
     type=click.Choice(("gradient", "exact", "auto", "flat")),
@@ -78,8 +81,6 @@ from vmesh.formats.svg.style import Mode, Seams, Style
 @limit_options
 @quiet_option
 def command(
-    source: str,
-    target: str,
     mode: Mode,
     tolerance: float,
     merge: float,
@@ -91,33 +92,36 @@ def command(
     quiet: bool,
     **options: Any,
 ) -> None:
-    """Turn a .vmesh file, or a photograph, into SVG; compressed if OUTPUT ends in .svgz.
+    """Turn .vmesh files, or photographs, into SVG; compressed if OUTPUT ends in .svgz.
 
-    The options of the encoder apply to photographs.
+    Without OUTPUT it is named after INPUT, with .svg at its end. With -o DIR there may be many
+    INPUTs, also folders. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
-    check_suffix(target, (".svg", ".svgz"))
-    wanted = FORMATS[".svg"] if target == STANDARD else format_of(target)
+    reading, jobs = take_picture_options(options), take_jobs(options, _MAKING)
     try:
         n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-    convert(
-        source,
-        target,
-        wanted,
-        settings,
-        reading,
-        limits,
-        quiet=quiet,
-        strip=strip,
-        n_stages=n_stages,
-        mode=mode,
-        tolerance=tolerance,
-        merge=merge,
-        seams=seams,
-        fit=None if fit is None else read_photograph(fit, reading, limits).array,
-        width=width,
-        height=height,
-    )
+    pixels = None if fit is None else read_photograph(fit, reading, limits).array
+
+    def work(job: Job) -> None:
+        convert(
+            job,
+            FORMATS[".svg"] if job.target == STANDARD else format_of(job.target),
+            settings,
+            reading,
+            limits,
+            quiet=quiet,
+            strip=strip,
+            n_stages=n_stages,
+            mode=mode,
+            tolerance=tolerance,
+            merge=merge,
+            seams=seams,
+            fit=pixels,
+            width=width,
+            height=height,
+        )
+
+    jobs.run(work)

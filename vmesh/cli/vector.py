@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Unpack
 
+from vmesh.cli.jobs import Job
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import read_mesh_or_photograph, write_output
+from vmesh.cli.streams import read_mesh_or_photograph
 from vmesh.encoder.settings import Settings
 from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.registry import ExportOptions, Format, write_mesh
@@ -13,8 +14,7 @@ from vmesh.limits import Limits
 
 
 def convert(
-    source: str,
-    target: str,
+    job: Job,
     wanted: Format,
     settings: Settings,
     reading: PictureOptions,
@@ -32,9 +32,9 @@ def convert(
     from vmesh.encoder.pipeline import count_steps, encode_with
     from vmesh.mesh import Mesh
 
-    given = read_mesh_or_photograph(source, reading, limits)
+    given = read_mesh_or_photograph(job.source, reading, limits)
     n_steps = 1 if isinstance(given, Mesh) else 1 + count_steps(settings)
-    with show_progress("converting", n_steps + n_stages, quiet=quiet) as report:
+    with show_progress(f"converting{job.place}", n_steps + n_stages, quiet=quiet) as report:
         if isinstance(given, Mesh):
             mesh = given
         else:
@@ -42,6 +42,4 @@ def convert(
         report("writing")
         if n_stages:
             options["progress"] = report
-        write_output(
-            target, lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options)
-        )
+        job.write(lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options))
