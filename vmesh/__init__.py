@@ -7,6 +7,7 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG, PLY ... by the file's name
+    vmesh.export_album(meshes, "a.pdf")    Meshes -> PDF, a page each
     mesh = vmesh.import_mesh("mesh.ply")   PLY, OBJ, glTF or text -> Mesh
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
     vmesh.study(array)                     a report on the photograph, shown by notebooks
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
         VmeshError,
     )
     from vmesh.formats.models.mesh_import import import_mesh
+    from vmesh.formats.pdf.album import export_album
     from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster.rendering import render
     from vmesh.formats.registry import export
@@ -61,6 +63,7 @@ __all__ = [
     "dumps",
     "encode",
     "export",
+    "export_album",
     "import_mesh",
     "load",
     "loads",
@@ -87,6 +90,7 @@ _HOMES: Final = {
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",
     "export": "vmesh.formats.registry",
+    "export_album": "vmesh.formats.pdf.album",
     "import_mesh": "vmesh.formats.models.mesh_import",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",

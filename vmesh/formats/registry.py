@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from vmesh.arrays import SampleArray
     from vmesh.formats.metadata.privacy import Strip
     from vmesh.formats.pdf.document import Backend
+    from vmesh.formats.pdf.page_size import Orientation
     from vmesh.formats.svg.size import Length
     from vmesh.formats.svg.style import Mode, Seams
     from vmesh.mesh.placement import Matrix
@@ -41,6 +42,9 @@ class ExportOptions(TypedDict, total=False):
     id_prefix: str | None
     fit: SampleArray | None
     page_width: str | None
+    page_size: str | None
+    orientation: Orientation | None
+    margin: str | None
     backend: Backend
     ascii: bool
     progress: Progress | None
@@ -204,8 +208,8 @@ def export(
         may be in one HTML page.
     fit : ndarray
         For SVG the photograph whose pixels the gradients are fitted to.
-    page_width : str
-        For PDF, such as "210mm".
+    page_width, page_size, orientation, margin : str
+        For PDF, as for :func:`vmesh.export_album`.
     backend : {"native", "cairo"}
         For PDF what writes it.
     ascii : bool

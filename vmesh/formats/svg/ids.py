@@ -53,13 +53,13 @@ def prefix_of(mesh: Mesh, style: Style, rgba: UInt8Array | None) -> str:
         return f"{style.id_prefix}-"
     numbers = (mesh.width, mesh.height, mesh.unit, mesh.n_components)
     digest = hashlib.sha256(repr((numbers, style)).encode())
-    arrays = [mesh.vertices, mesh.triangles, mesh.plain_colors]
+    digest.update(mesh.vertices.astype("<i4", copy=False).tobytes())
+    digest.update(mesh.triangles.astype("<i4", copy=False).tobytes())
+    digest.update(mesh.plain_colors.tobytes())
     if rgba is not None:
         # Pixels that do not show are not fitted to.
         shows = (rgba[:, :, 3:] > 0) | (mesh.n_components < 4)
-        arrays.append(np.where(shows, rgba, np.uint8(0)))
-    for array in arrays:
-        digest.update(np.ascontiguousarray(array, array.dtype.newbyteorder("<")))
+        digest.update(np.where(shows, rgba, np.uint8(0)).tobytes())
     return _letters(int.from_bytes(digest.digest(), "big"))
 
 
