@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from vmesh.cli.jobs import Job
 from vmesh.cli.progress import show_progress
@@ -11,6 +11,11 @@ from vmesh.encoder.settings import Settings
 from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.registry import ExportOptions, Format, write_mesh
 from vmesh.limits import Limits
+
+if TYPE_CHECKING:
+    from vmesh.formats.picture.picture import Picture
+    from vmesh.mesh import Mesh
+    from vmesh.progress import Progress
 
 
 def convert(
@@ -29,17 +34,24 @@ def convert(
     `n_stages` is how many the writer reports; 0 for one that reports none. Options are those of
     the format.
     """
-    from vmesh.encoder.pipeline import count_steps, encode_with
+    from vmesh.encoder.pipeline import count_steps
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(job.source, reading, limits)
     n_steps = 1 if isinstance(given, Mesh) else 1 + count_steps(settings)
     with show_progress(f"converting{job.place}", n_steps + n_stages, quiet=quiet) as report:
-        if isinstance(given, Mesh):
-            mesh = given
-        else:
-            mesh = encode_with(given.array, settings, metadata=given.metadata, progress=report)
+        mesh = mesh_of(given, settings, report)
         report("writing")
         if n_stages:
             options["progress"] = report
         job.write(lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options))
+
+
+def mesh_of(given: Mesh | Picture, settings: Settings, report: Progress) -> Mesh:
+    """A mesh as it is, or that of a photograph."""
+    from vmesh.encoder.pipeline import encode_with
+    from vmesh.mesh import Mesh
+
+    if isinstance(given, Mesh):
+        return given
+    return encode_with(given.array, settings, metadata=given.metadata, progress=report)

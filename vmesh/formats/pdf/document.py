@@ -121,9 +121,7 @@ class Album(Protocol):
         """Write what is left to write."""
 
 
-def open_album(
-    stream: BinaryIO, backend: Backend, description: Description | None = None
-) -> Album:
+def open_album(stream: BinaryIO, backend: Backend, description: Description | None = None) -> Album:
     """A document that a backend writes; without a description of its own it has an outline."""
     if backend not in get_args(Backend):
         raise ValueError(

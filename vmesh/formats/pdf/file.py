@@ -4,8 +4,8 @@ pydyf says how objects look. Its own document holds all of them until the end, a
 once more; an album of a thousand photographs is hundreds of megabytes.
 
 The version is 1.4, of which soft masks and XMP are; shadings of type 4 are of 1.3. Pages that count
-in larger units need 1.6. Newer profiles than a version names are no matter: programs read
-them, or take the device's colours in their place. Object streams, of 1.5, would save some 300 bytes.
+in larger units need 1.6. Profiles may be newer: programs read them whatever the version, or take
+the device's colours in their place. Object streams, of 1.5, would save 50 to 130 bytes.
 
 References
 ----------
