@@ -7,6 +7,7 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG, PLY ... by the file's name
+    text = vmesh.data_uri(mesh)            Mesh -> SVG in the place of an address
     vmesh.export_album(meshes, "a.pdf")    Meshes -> PDF, a page each
     mesh = vmesh.import_mesh("mesh.ply")   PLY, OBJ, glTF or text -> Mesh
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster.rendering import render
     from vmesh.formats.registry import export
+    from vmesh.formats.svg.data_uri import data_uri
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
     from vmesh.pillow_plugin import register
@@ -59,6 +61,7 @@ __all__ = [
     "Settings",
     "Study",
     "VmeshError",
+    "data_uri",
     "dump",
     "dumps",
     "encode",
@@ -86,6 +89,7 @@ _HOMES: Final = {
     "Settings": "vmesh.encoder.settings",
     "Study": "vmesh.report.study",
     "VmeshError": "vmesh.errors",
+    "data_uri": "vmesh.formats.svg.data_uri",
     "dump": "vmesh.codec.stream",
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",

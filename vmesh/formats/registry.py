@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
@@ -102,6 +102,10 @@ FORMATS: Final = {
     ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb"),
     ".txt": Format("text", "vmesh.codec.text", "write_text"),
 }
+
+DATA_URI: Final = replace(
+    FORMATS[".svg"], module="vmesh.formats.svg.data_uri", function="write_data_uri"
+)
 
 # Formats that hold a mesh as other programs know it, which are read too.
 MESH_SUFFIXES: Final = (".ply", ".obj", ".glb", ".txt")

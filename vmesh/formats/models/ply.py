@@ -22,9 +22,18 @@ from vmesh.errors import MeshError
 _ORDERS: Final = {"binary_little_endian": "<", "binary_big_endian": ">"}
 # Letters of struct for the names of types.
 _TYPES: Final = {
-    **{"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I"},
-    **{"int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i", "uint32": "I"},
-    **{"float": "f", "double": "d", "float32": "f", "float64": "d"},
+    name: letter
+    for names, letter in {
+        "char int8": "b",
+        "uchar uint8": "B",
+        "short int16": "h",
+        "ushort uint16": "H",
+        "int int32": "i",
+        "uint uint32": "I",
+        "float float32": "f",
+        "double float64": "d",
+    }.items()
+    for name in names.split()
 }
 _INDICES: Final = ("vertex_index", "vertex_indices")
 _END: Final = b"end_header"
@@ -42,7 +51,7 @@ class _Element(NamedTuple):
     """An element of a file, and which line of the header begins it."""
 
     name: str
-    count: int
+    n_rows: int
     line: int
     properties: list[_Property]
 
@@ -67,7 +76,7 @@ def with_triangles(data: bytes) -> bytes:
         if any(each.count_letter for each in element.properties):
             return data
         letters = "".join(each.letter for each in element.properties)
-        start += element.count * struct.calcsize(order + letters)
+        start += element.n_rows * struct.calcsize(order + letters)
     face = elements[n_before]
     if not any(each.count_letter and each.name in _INDICES for each in face.properties):
         return data
@@ -112,7 +121,7 @@ def _elements(lines: list[str]) -> list[_Element]:
 def _polygons(data: bytes, start: int, order: str, face: _Element) -> Iterator[tuple[int, ...]]:
     """Indices of the corners of each face."""
     place = start
-    for _ in range(face.count):
+    for _ in range(face.n_rows):
         polygon: tuple[int, ...] = ()
         for name, letter, count_letter in face.properties:
             count = 1
