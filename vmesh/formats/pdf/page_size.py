@@ -55,7 +55,7 @@ Orientation = Literal["portrait", "landscape"]
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Where a picture is on a page, in points from the page's lower left corner."""
+    """Place of a picture on a page, in points from the page's lower left corner."""
 
     left: float
     bottom: float
@@ -72,7 +72,7 @@ class Page:
     width, height : float
         In points, 1/72 inch.
     box : Box, optional
-        Where the picture is; all of the page unless given.
+        Place of the picture; all of the page unless given.
     """
 
     width: float
@@ -81,7 +81,7 @@ class Page:
 
     @property
     def picture(self) -> Box:
-        """Where the picture is."""
+        """Place of the picture."""
         return self.box or Box(0, 0, self.width, self.height)
 
     @property

@@ -138,7 +138,7 @@ class Slopes:
         )
 
     def followed_by(self, other: Slopes) -> Slopes:
-        """These gradients and then others."""
+        """Gradients of these regions and then of others."""
         names = ("centers", "middles", "axes", "slopes")
         return Slopes(
             *(np.concatenate([getattr(self, name), getattr(other, name)]) for name in names)
@@ -164,7 +164,7 @@ class Slopes:
         return cls(moments.means[:, :2], moments.means[:, 2:], axes, slopes).turned()
 
     def turned(self) -> Slopes:
-        """The same gradients, written so that they rise to the right."""
+        """Gradients of the same colours, written so that they rise to the right."""
         signs = np.where(self.slopes[:, :1] < 0, -1.0, 1.0)
         return Slopes(self.centers, self.middles, self.axes * signs, self.slopes * signs)
 
