@@ -39,8 +39,7 @@ if TYPE_CHECKING:
     from vmesh.formats.pdf.album import export_album
     from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster.rendering import render
-    from vmesh.formats.registry import export
-    from vmesh.formats.svg.data_uri import data_uri
+    from vmesh.formats.registry import data_uri, export
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
     from vmesh.pillow_plugin import register
@@ -89,7 +88,7 @@ _HOMES: Final = {
     "Settings": "vmesh.encoder.settings",
     "Study": "vmesh.report.study",
     "VmeshError": "vmesh.errors",
-    "data_uri": "vmesh.formats.svg.data_uri",
+    "data_uri": "vmesh.formats.registry",
     "dump": "vmesh.codec.stream",
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",

@@ -84,7 +84,7 @@ def shown(text: str) -> str:
     What moves the cursor, ends a line or turns the direction of writing is written as an escape
     sequence of Python's, and so is a byte of a name that is no character of the system's encoding.
     """
-    return "".join(map(_shown_character, text))
+    return text if text.isprintable() else "".join(map(_shown_character, text))
 
 
 def _shown_character(character: str) -> str:

@@ -7,10 +7,11 @@ import os
 import secrets
 import shutil
 import stat
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import BinaryIO, Final, cast
 
 # What a file system says that cannot exchange a file, such as one that is mounted by itself.
 _NOT_EXCHANGED: Final = (errno.EBUSY, errno.EPERM, errno.EACCES, errno.EXDEV)
@@ -64,8 +65,8 @@ def atomic_output(
         try:
             with draft.stream:
                 yield draft.stream
-                draft.complete(times)
-            draft.take_name(target, replace=replace)
+                draft.complete(times, replace=replace)
+            draft.take_name(replace=replace)
         finally:
             draft.discard()
     except OSError as error:
@@ -103,13 +104,17 @@ def check_replaceable(
         If it is there, and stays.
     PermissionError
         If it is protected, and stays.
+    IsADirectoryError
+        If it is a folder.
     """
     name = os.fspath(path)
     try:
         status = Path(path).stat()
     except OSError:
         return  # Nothing is there, or writing will tell.
-    is_stream = not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode)
+    if stat.S_ISDIR(status.st_mode):
+        raise IsADirectoryError(f"{name} is a folder")
+    is_stream = not stat.S_ISREG(status.st_mode)
     if overwrite or (is_stream and is_named):
         return
     if overwrite is not None or not is_named:
@@ -125,18 +130,20 @@ def check_replaceable(
 class _Draft:
     """The new file of an output, until it has taken its name.
 
-    On Linux it has no name at first: then nothing is left of it if the process is killed.
+    On Linux it has no name at first: then nothing is left of it if the process is killed. Where its
+    folder cannot be written, but the file that it replaces, it is elsewhere until it is copied.
     """
 
     SUFFIX: Final = ".part"
 
     def __init__(self, target: Path) -> None:
-        self.path: Path | None = None
+        self._target = target
+        self._path: Path | None = None
         self._new_path = target.with_name(f".{secrets.token_hex(8)}{self.SUFFIX}")
-        self.stream = self._nameless() or self._named()
+        self.stream = self._nameless() or self._named_or_elsewhere()
 
     def _nameless(self) -> BinaryIO | None:
-        """A file without a name, if the system has such, and can name them afterwards."""
+        """A file without a name, if the system has such and can name them afterwards."""
         if not hasattr(os, "O_TMPFILE"):
             return None
         with suppress(OSError):  # The file system may have none.
@@ -149,82 +156,102 @@ class _Draft:
 
     def _named(self) -> BinaryIO:
         stream = self._new_path.open("x+b")
-        self.path = self._new_path
+        self._path = self._new_path
         return stream
 
-    def complete(self, times: Times | None) -> None:
-        """See to it that all is on the disk, under a name."""
-        self.stream.flush()
-        if times is not None and os.utime in os.supports_fd:
-            with suppress(OSError):
-                os.utime(self.stream.fileno(), ns=times)
-        _sync(self.stream)
-        if self.path is None:
-            try:
-                # Only with a descriptor does Python follow the path; which does not matter.
-                os.link(_descriptor(self.stream), self._new_path, src_dir_fd=self.stream.fileno())
-                self.path = self._new_path
-            except OSError:
-                self._copy(times)
-        elif times is not None and os.utime not in os.supports_fd:
-            with suppress(OSError):
-                os.utime(self.path, ns=times)
-
-    def _copy(self, times: Times | None) -> None:
-        """Copy what cannot be named to a file with a name."""
-        self.stream.seek(0)
-        with self._named() as copy:
-            shutil.copyfileobj(self.stream, copy)
-            copy.flush()
-            if times is not None:
-                with suppress(OSError):
-                    os.utime(copy.fileno(), ns=times)
-            _sync(copy)
-
-    def take_name(self, target: Path, *, replace: bool) -> None:
-        """Take the name of the output."""
-        assert self.path is not None
-        if not replace:
-            self._take_new_name(target)
-            return
-        if target.exists():
-            with suppress(OSError):  # Some file systems have no modes.
-                self.path.chmod(stat.S_IMODE(target.stat().st_mode))
+    def _named_or_elsewhere(self) -> BinaryIO:
         try:
-            self.path.replace(target)
-        except OSError as error:
-            if error.errno not in _NOT_EXCHANGED or not target.is_file():
+            return self._named()
+        except OSError:
+            if not self._target.is_file() or not os.access(self._target, os.W_OK):
                 raise
-            _fill(target, self.path)
+            return cast("BinaryIO", tempfile.TemporaryFile())
 
-    def _take_new_name(self, target: Path) -> None:
-        """Take a name that nothing else has, also where files have only one."""
-        assert self.path is not None
+    def complete(self, times: Times | None, *, replace: bool) -> None:
+        """See to it that all is on the disk, under some name."""
+        self.stream.flush()
+        _set_times(self.stream, times)
+        _sync(self.stream)
+        if self._path is not None:
+            return
         try:
-            os.link(self.path, target)
+            # Only with a descriptor does Python follow the path; which does not matter.
+            os.link(_descriptor(self.stream), self._new_path, src_dir_fd=self.stream.fileno())
+            self._path = self._new_path
+        except (OSError, NotImplementedError):
+            self.stream.seek(0)
+            with self._copy(replace=replace) as copy:
+                shutil.copyfileobj(self.stream, copy)
+                copy.truncate()
+                copy.flush()
+                _set_times(copy, times)
+                _sync(copy)
+
+    def _copy(self, *, replace: bool) -> BinaryIO:
+        """A file to copy the draft to, which cannot be given a name."""
+        try:
+            return self._named()
+        except OSError:
+            if not replace or not self._target.is_file():
+                raise
+            return self._target.open("r+b")
+
+    def take_name(self, *, replace: bool) -> None:
+        """Take the name of the output."""
+        if self._path is None:
+            return  # It was copied there.
+        if not replace:
+            self._take_new_name(self._path)
+            return
+        if self._target.exists():
+            with suppress(OSError):  # Some file systems have no modes.
+                self._path.chmod(stat.S_IMODE(self._target.stat().st_mode))
+        try:
+            self._path.replace(self._target)
+        except OSError as error:
+            if error.errno not in _NOT_EXCHANGED or not self._target.is_file():
+                raise
+            with self._path.open("rb") as read, self._target.open("r+b") as written:
+                shutil.copyfileobj(read, written)
+                written.truncate()
+
+    def _take_new_name(self, path: Path) -> None:
+        """Take a name that nothing else has, also where a file can have only one."""
+        try:
+            os.link(path, self._target)
         except FileExistsError:
-            raise _is_there(target) from None
+            raise self._is_there() from None
         except OSError:
             try:
-                target.open("xb").close()
+                self._target.open("xb").close()
             except FileExistsError:
-                raise _is_there(target) from None
-            self.path.replace(target)
+                raise self._is_there() from None
+            try:
+                path.replace(self._target)
+            except OSError:
+                self._target.unlink()
+                raise
+
+    def _is_there(self) -> FileExistsError:
+        text = "is there already and was left as it is"
+        return FileExistsError(errno.EEXIST, text, os.fspath(self._target))
 
     def discard(self) -> None:
         """Leave nothing behind but what has taken its name."""
-        if self.path is not None:
+        if self._path is not None:
             with suppress(OSError):
-                self.path.unlink()
-
-
-def _is_there(target: Path) -> FileExistsError:
-    return FileExistsError(errno.EEXIST, "is there already and was left as it is", str(target))
+                self._path.unlink()
 
 
 def _descriptor(stream: BinaryIO) -> str:
     """The path by which an open file can be linked to."""
     return f"/proc/self/fd/{stream.fileno()}"
+
+
+def _set_times(stream: BinaryIO, times: Times | None) -> None:
+    if times is not None:
+        with suppress(OSError):  # They are no reason to lose the file.
+            os.utime(stream.fileno() if os.utime in os.supports_fd else stream.name, ns=times)
 
 
 def _sync(stream: BinaryIO) -> None:
@@ -233,10 +260,3 @@ def _sync(stream: BinaryIO) -> None:
     except OSError as error:
         if error.errno not in _NOT_SYNCED:
             raise
-
-
-def _fill(target: Path, source: Path) -> None:
-    """Copy a file's bytes into another one that cannot be exchanged."""
-    with source.open("rb") as read, target.open("r+b") as written:
-        shutil.copyfileobj(read, written)
-        written.truncate()

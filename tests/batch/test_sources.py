@@ -26,7 +26,7 @@ def photos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def names(*arguments: str, output: str = "out") -> list[tuple[str, str]]:
     """Path and name of each source."""
-    found = find_sources(arguments, output, PICTURES)
+    found = find_sources(arguments, output, PICTURES).sources
     return [(source.path.as_posix(), source.name.as_posix()) for source in found]
 
 

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,10 @@ from PIL import Image
 
 import vmesh
 from tests.batch.pictures import write_pictures
-from tests.cli.program import fail, run, succeed
+from tests.cli.program import Program, fail, run, succeed
 from vmesh.arrays import UInt8Array
+from vmesh.batch.journal import NAME
+from vmesh.batch.task import Outcome, Task
 
 FAST = ("-e", "1", "--vertices", "60", "-j", "2")
 
@@ -25,7 +28,8 @@ def lines(output: bytes) -> dict[str, dict[str, Any]]:
 
 
 def files_in(folder: Path) -> set[str]:
-    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    """Files below a folder, but for what is hidden, such as the journal."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("[!.]*") if path.is_file()}
 
 
 @pytest.fixture
@@ -43,7 +47,9 @@ def test_a_folder_is_encoded_and_not_encoded_again(photos: Path, tmp_path: Path)
     succeed("encode", photos / "01.png", tmp_path / "one.vmesh", *FAST)
     assert (out / "01.vmesh").read_bytes() == (tmp_path / "one.vmesh").read_bytes()
     (out / "01.vmesh").unlink()
-    figures = lines(succeed("batch", photos, "-o", out, "--json", *FAST))
+    again = run("batch", photos, "-o", out, "--json", *FAST)
+    assert again.stderr == b"vmesh: 2 of 3 skipped: their outputs are there\n"
+    figures = lines(again.stdout)
     assert {source: line["status"] for source, line in figures.items()} == {
         str(photos / "00.png"): "skipped",
         str(photos / "01.png"): "done",
@@ -64,7 +70,7 @@ def test_every_format_is_written_and_reported(photos: Path, tmp_path: Path) -> N
     assert line["bytes"] == sum(Path(path).stat().st_size for path in outputs)
     assert line["seconds"] > 0
     assert line["error"] is None
-    assert list(line) == ["source", "status", "outputs", "bytes", "seconds", "error"]
+    assert list(line) == ["source", "status", "outputs", "bytes", "seconds", "error", "notes"]
     assert len(files_in(out)) == 8
 
 
@@ -157,7 +163,143 @@ def test_an_interrupted_batch_leaves_no_half_files_and_goes_on(
     left = files_in(out)
     assert "long.vmesh" not in left
     assert all(vmesh.load(out / name) for name in left)
-    figures = lines(succeed(*command[3:], *FAST))
+    (photos / "long.png").write_bytes((photos / "00.png").read_bytes())
+    figures = lines(succeed(*command[3:], "-e", "9", "-q", "95", "--quiet"))
     assert figures[first["source"]]["status"] == "skipped"
     assert figures[str(photos / "long.png")]["status"] == "done"
     assert files_in(out) == {"00.vmesh", "01.vmesh", "long.vmesh", "sea/00.vmesh"}
+
+
+def test_a_folder_of_meshes_is_converted(photos: Path, tmp_path: Path) -> None:
+    meshes, out = tmp_path / "meshes", tmp_path / "out"
+    succeed("batch", photos, "-o", meshes, *FAST)
+    assert succeed("batch", meshes, "-o", out, "--to", "png,svg") == b""
+    names = ("00", "01", "sea/00")
+    assert files_in(out) == {f"{name}.{suffix}" for name in names for suffix in ("png", "svg")}
+    text = fail(1, "batch", meshes, "-o", tmp_path / "none")
+    assert "no pictures were found" in text
+    assert ".vmesh" in text
+
+
+def test_a_photograph_is_taken_rather_than_its_mesh_beside_it(photos: Path, tmp_path: Path) -> None:
+    succeed("batch", photos, "-o", photos, *FAST)
+    alone = photos / "alone.vmesh"
+    alone.write_bytes((photos / "00.vmesh").read_bytes())
+    figures = lines(
+        succeed("batch", photos, "-o", tmp_path / "out", "--to", "svg", "--json", *FAST)
+    )
+    assert set(figures) == {
+        str(alone), *(str(photos / name) for name in ("00.png", "01.png", "sea/00.png"))
+    }  # fmt: skip
+
+
+def test_what_is_passed_over_in_folders_is_named_and_counted(photos: Path, tmp_path: Path) -> None:
+    for name in ("notes.txt", "a\x1b[31m.mov", "c.doc", "d.doc", "e.doc", "sea/f.doc"):
+        (photos / name).touch()
+    for name in (".hidden.txt", "00.xmp"):  # hidden, and of a photograph
+        (photos / name).touch()
+    done = run("batch", photos, "-o", tmp_path / "out", *FAST)
+    assert done.returncode == 0
+    assert done.stderr.decode() == (
+        "vmesh: passed over in folders: a\\x1b[31m.mov, c.doc, d.doc, e.doc, notes.txt and 1 more\n"
+    )
+    succeed("batch", photos, "-o", tmp_path / "out", "--quiet", *FAST)
+
+
+def test_a_photograph_that_an_older_one_replaced_is_made_again_and_so_are_other_settings(
+    photos: Path, tmp_path: Path
+) -> None:
+    out, photo = tmp_path / "out", photos / "00.png"
+    command = ("batch", photo, "-o", out, "--json", "--quiet")
+
+    def status(*options: str) -> str:
+        return str(lines(succeed(*command, *options))[str(photo)]["status"])
+
+    assert status(*FAST) == "done"
+    photo.write_bytes((photos / "01.png").read_bytes())
+    os.utime(photo, (1_000_000_000, 1_000_000_000))
+    assert status(*FAST) == "done"
+    succeed("encode", photos / "01.png", tmp_path / "one.vmesh", *FAST)
+    assert (out / "00.vmesh").read_bytes() == (tmp_path / "one.vmesh").read_bytes()
+    assert status(*FAST) == "skipped"
+    assert status("-e", "1", "--vertices", "30") == "done"
+    assert status("-e", "1", "--vertices", "30") == "skipped"
+
+
+def test_times_are_kept_if_asked_for_and_outputs_are_up_to_date_then(
+    photos: Path, tmp_path: Path
+) -> None:
+    out, photo = tmp_path / "out", photos / "00.png"
+    os.utime(photo, (1_000_000_000, 1_000_000_000))
+    succeed("batch", photo, "-o", out, "--preserve", *FAST)
+    assert (out / "00.vmesh").stat().st_mtime == 1_000_000_000
+    for _ in range(2):
+        figures = lines(run("batch", photo, "-o", out, "--json", *FAST).stdout)
+        assert figures[str(photo)]["status"] == "skipped"
+        (out / NAME).unlink()
+
+
+def test_what_is_there_is_kept_if_asked_for_and_what_is_protected_unless_asked_for(
+    photos: Path, tmp_path: Path
+) -> None:
+    out, photo = tmp_path / "out", photos / "00.png"
+    out.mkdir()
+    target = out / "00.vmesh"
+    target.write_bytes(b"mine")
+    os.utime(target, (1, 1))
+    done = run("batch", photo, "-o", out, "--no-overwrite", *FAST)
+    assert (done.returncode, done.stderr) == (
+        0, b"vmesh: 1 of 1 skipped: their outputs are there\n"
+    )  # fmt: skip
+    target.chmod(0o444)
+    assert "00.vmesh: is write-protected" in fail(1, "batch", photo, "-o", out, *FAST)
+    assert target.read_bytes() == b"mine"
+    succeed("batch", photo, "-o", out, "--overwrite", *FAST)
+    assert vmesh.load(target).n_vertices > 0
+    assert "--force" in fail(2, "batch", photo, "-o", out, "--force", "--no-overwrite")
+
+
+def test_code_that_cannot_be_kept_is_told_once_and_not_for_every_process(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def troubled(tasks: Iterable[Task], _: int) -> Iterator[Outcome]:
+        for task in tasks:
+            yield Outcome(task.source, "done", trouble="compiled code could not be kept")
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", troubled)
+    status, output, told = program.run("batch", photos, "-o", tmp_path / "out", "--json")
+    assert (status, told) == (0, "vmesh: compiled code could not be kept\n")
+    assert len(output.splitlines()) == 3
+
+
+def test_what_is_to_be_told_of_a_photograph_is_told(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def noted(tasks: Iterable[Task], _: int) -> Iterator[Outcome]:
+        for task in tasks:
+            yield Outcome(task.source, "done", notes=("its profile was left out",))
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", noted)
+    photo = photos / "00.png"
+    status, _, told = program.run("batch", photo, "-o", tmp_path / "out")
+    assert (status, told) == (0, f"vmesh: {photo}: its profile was left out\n")
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="processes are not bound")
+def test_as_many_processes_work_as_there_are_processors_to_use(
+    photos: Path, tmp_path: Path, program: Program, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def counted(_: Iterable[Task], n_jobs: int) -> Iterator[Outcome]:
+        asked.append(n_jobs)
+        yield from ()
+
+    monkeypatch.setattr("vmesh.cli.batch.run_in_processes", counted)
+    before = os.sched_getaffinity(0)
+    try:
+        os.sched_setaffinity(0, {min(before)})
+        program.succeed("batch", photos, "-o", tmp_path / "out")
+    finally:
+        os.sched_setaffinity(0, before)
+    assert asked == [1]

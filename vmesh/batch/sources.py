@@ -62,8 +62,25 @@ class Source:
     name: Path
 
 
-def find_sources(arguments: Iterable[str], output: str | None, kind: Kind) -> list[Source]:
-    """Files that some arguments stand for, each once, in the order of the arguments.
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Files that some arguments stand for.
+
+    Parameters
+    ----------
+    sources : list of Source
+        Each once, in the order of the arguments.
+    passed_over : list of Path
+        Other files in the folders, but for those that differ in their endings alone from a source
+        beside them.
+    """
+
+    sources: list[Source]
+    passed_over: list[Path]
+
+
+def find_sources(arguments: Iterable[str], output: str | None, kind: Kind) -> Found:
+    """Files that some arguments stand for.
 
     Folders are searched with the folders below them, in the order of names, for files of a kind by
     the ending of their names. What is hidden, links to folders and the folder `output` are passed
@@ -77,18 +94,23 @@ def find_sources(arguments: Iterable[str], output: str | None, kind: Kind) -> li
         If there are none.
     """
     named = list(arguments)
+    passed_over: list[Path] = []
     found = {
         (source.path.resolve(), source.name): source
         for argument in named
-        for source in _expand(argument, output, kind)
+        for source in _expand(argument, output, kind, passed_over)
     }
     if not found:
-        raise ValueError(f"no {kind.name} were found in {', '.join(map(shown, named))}")
-    return list(found.values())
+        endings = ", ".join(sorted({shown(path.suffix) or path.name for path in passed_over})[:5])
+        only = f", only others such as {endings}" if endings else ""
+        raise ValueError(f"no {kind.name} were found in {', '.join(map(shown, named))}{only}")
+    return Found(list(found.values()), passed_over)
 
 
-def _expand(argument: str, output: str | None, kind: Kind) -> Iterator[Source]:
-    """Files that one argument stands for.
+def _expand(
+    argument: str, output: str | None, kind: Kind, passed_over: list[Path]
+) -> Iterator[Source]:
+    """Files that one argument stands for; adds those that are passed over.
 
     A pattern that nothing matches, or a file that is not there, is a source that cannot be read.
     """
@@ -101,7 +123,8 @@ def _expand(argument: str, output: str | None, kind: Kind) -> Iterator[Source]:
         matches = [Path(match) for match in matched] or [named]
         base = _fixed_part(named)
     for match in matches:
-        for path in _files_in(match, output, kind) if match.is_dir() else [match]:
+        taken = _files_in(match, output, kind, passed_over) if match.is_dir() else [match]
+        for path in taken:
             yield Source(path, path.relative_to(base))
 
 
@@ -111,7 +134,9 @@ def _fixed_part(pattern: Path) -> Path:
     return Path(*pattern.parts[:n_fixed])
 
 
-def _files_in(folder: Path, output: str | None, kind: Kind) -> Iterator[Path]:
+def _files_in(
+    folder: Path, output: str | None, kind: Kind, passed_over: list[Path]
+) -> Iterator[Path]:
     """Files of a kind in a folder and below it, but not in `output` below it."""
     left_out = None if output is None else Path(output).resolve()
     for place, folders, files in os.walk(folder, onerror=_refuse):
@@ -123,9 +148,13 @@ def _files_in(folder: Path, output: str | None, kind: Kind) -> Iterator[Path]:
         paths = [Path(place, name) for name in sorted(files) if not name.startswith(".")]
         taken = [path for path in paths if path.suffix.lower() in kind.suffixes]
         pictured = {path.stem for path in taken if path.suffix.lower() != FILE_SUFFIX}
-        for path in taken:
-            if path.suffix.lower() != FILE_SUFFIX or path.stem not in pictured:
-                yield path
+        yield from (
+            path
+            for path in taken
+            if path.suffix.lower() != FILE_SUFFIX or path.stem not in pictured
+        )
+        stems = {path.stem for path in taken}
+        passed_over += [path for path in paths if path.stem not in stems]
 
 
 def _refuse(error: OSError) -> None:

@@ -6,9 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import Final
 
-import click
-
-from vmesh.cli.streams import STANDARD_OUTPUT
+from vmesh.cli.streams import STANDARD_OUTPUT, remark
 from vmesh.errors import VmeshError, describe, shown
 
 # What the data, the system or the user can be the reason of.
@@ -46,6 +44,12 @@ def end_with(failures: Iterable[tuple[str, str]]) -> None:
         # Errors of the system name it themselves.
         name = shown(source)
         sentence = error if error.startswith(name) else f"{name}: {error}"
-        click.echo(f"vmesh: {sentence}", err=True)
+        remark(sentence)
     if failed:
         sys.exit(1)
+
+
+def tell_trouble(sentence: str | None) -> None:
+    """Say what hindered a command that did its work all the same, if anything did."""
+    if sentence is not None:
+        remark(sentence)

@@ -193,6 +193,12 @@ def is_one_output(output: str, making: Making) -> bool:
     return Path(output).suffix.lower() in making.suffixes and not Path(output).is_dir()
 
 
+def check_no_file(folder: str) -> None:
+    """Refuse a folder for outputs that is a file."""
+    if Path(folder).is_file():
+        raise click.UsageError(f"{shown(folder)}: a folder is needed, and this is a file")
+
+
 def find_inputs(paths: Iterable[str], output: str | None, kind: Kind) -> list[Source]:
     """Inputs that some arguments name, or that are in folders that they name, but not in `output`.
 
@@ -206,7 +212,7 @@ def find_inputs(paths: Iterable[str], output: str | None, kind: Kind) -> list[So
     named = list(paths)
     if STANDARD in named and len(named) > 1:
         raise click.UsageError("standard input is one input, and cannot be among others")
-    return find_sources(named, output, kind)
+    return find_sources(named, output, kind).sources
 
 
 def _single(paths: tuple[str, ...], output: str | None, making: Making) -> tuple[str, str]:
@@ -243,8 +249,7 @@ def _in_folder(paths: tuple[str, ...], output: str, making: Making) -> list[tupl
         raise click.UsageError("expected a name for the output: its ending says the format")
     if STANDARD in paths:
         raise click.UsageError("expected a name for the output: standard input has none")
-    if Path(output).is_file():
-        raise click.UsageError(f"{shown(output)}: a folder is needed, and this is a file")
+    check_no_file(output)
     return [
         (str(source.path), str(Path(output, source.name).with_suffix(making.suffix)))
         for source in find_inputs(paths, output, making.inputs)

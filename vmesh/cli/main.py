@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import sys
+from contextlib import suppress
 from importlib import import_module
+from io import TextIOWrapper
 from typing import Final
 
 import click
 
+from vmesh.cli.failures import is_of_output, tell_trouble
+from vmesh.cli.streams import STANDARD_OUTPUT, remark
 from vmesh.cli.version import version_option
-from vmesh.errors import VmeshError, describe
+from vmesh.errors import VmeshError, describe, shown
 
 # Command -> its module and its line in the overview; modules are imported when used.
 COMMANDS: Final = {
@@ -34,6 +39,9 @@ COMMANDS: Final = {
     "report": ("vmesh.cli.report", "Compare photographs with their meshes, on one page."),
     "compare": ("vmesh.cli.compare", "Measure how close two pictures or meshes are."),
 }
+
+# Errors of writing. Those of files name them, those of what click prints, such as help, do not.
+_OF_WRITING: Final = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 class LazyGroup(click.Group):
@@ -68,19 +76,47 @@ def cli() -> None:
 
 def main() -> None:
     """Run the command line: exit 0 when done, 1 on a failure told in one line, 2 on wrong usage."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # What a terminal cannot show, it shows escaped.
+            stream.reconfigure(errors="backslashreplace")
+    status = _run()
+    can_tell = sys.stderr is not None and not sys.stderr.closed
+    if can_tell and "vmesh.kernels.jit" in sys.modules:
+        from vmesh.kernels.jit import take_trouble
+
+        tell_trouble(take_trouble())
+    sys.exit(status)
+
+
+def _run() -> int:
+    """Run the command line; returns its status."""
     try:
         cli.main(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return 0
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else 0
     except click.exceptions.Exit as stop:
-        sys.exit(stop.exit_code)
-    except click.exceptions.Abort:
-        sys.exit(130)
+        return stop.exit_code
+    except click.exceptions.Abort as stop:
+        if not isinstance(stop.__cause__, EOFError):
+            return 130
+        remark(describe(stop.__cause__))
     except click.UsageError as error:
-        error.show()
-        sys.exit(2)
+        lines = error.format_message().split("\n")
+        click.UsageError("\n".join(map(shown, lines)), error.ctx).show()
+        return 2
     except BrokenPipeError:
         # The reader of our output has gone: nobody is left to tell.
-        sys.stderr.close()
-        sys.exit(1)
+        if sys.stderr is not None:
+            sys.stderr.close()
     except (VmeshError, OSError, ValueError, MemoryError) as error:
-        click.echo(f"vmesh: {describe(error)}", err=True)
-        sys.exit(1)
+        if isinstance(error, OSError) and error.filename is None and error.errno in _OF_WRITING:
+            error.filename = STANDARD_OUTPUT
+        if is_of_output(error):
+            # Python would try again at the end, and say so in lines of its own.
+            with suppress(OSError):
+                sys.stdout.close()
+        remark(describe(error))
+    return 1

@@ -30,11 +30,16 @@ STANDARD_OUTPUT: Final = "standard output"
 
 def read_input(path: str) -> bytes:
     """Bytes of a file or of standard input."""
-    if path != STANDARD:
-        return Path(path).read_bytes()
-    if sys.stdin is None:
-        raise OSError("standard input is closed")
-    return sys.stdin.buffer.read()
+    try:
+        if path != STANDARD:
+            return Path(path).read_bytes()
+        if sys.stdin is None:
+            raise OSError("standard input is closed")
+        return sys.stdin.buffer.read()
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = "standard input" if path == STANDARD else path
+        raise
 
 
 def write_output(
@@ -61,7 +66,12 @@ def write_output(
 def tell(text: str, *, is_line: bool = True) -> None:
     """Print what a command was asked for on standard output."""
     with _standard_output():
-        click.echo(text, nl=is_line)
+        click.echo("\n".join(map(shown, text.split("\n"))), nl=is_line)
+
+
+def remark(text: str) -> None:
+    """Print a line on standard error, beside what a command was asked for."""
+    click.echo(f"vmesh: {shown(text)}", err=True)
 
 
 @contextmanager
@@ -99,7 +109,7 @@ def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh
         warnings.simplefilter("always", PartialFileWarning)
         mesh = _mesh_of(read_input(path), path, limits, allow_partial=allow_partial)
     for warning in caught:
-        click.echo(f"vmesh: {shown(path)}: {warning.message}", err=True)
+        remark(f"{path}: {warning.message}")
     return mesh
 
 
@@ -140,5 +150,5 @@ def _photograph_of(data: bytes, path: str, options: PictureOptions, limits: Limi
     except (ImageError, LimitError) as error:
         raise type(error)(f"{shown(path)}: {error}") from None
     for note in picture.notes:
-        click.echo(f"vmesh: {shown(path)}: {note}", err=True)
+        remark(f"{path}: {note}")
     return picture

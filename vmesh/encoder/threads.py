@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any, Final
+
+from vmesh.processors import count_processors
 
 _SHARE: Final = 4096  # items of a job that needs no order
 _MAX_THREADS: Final = 16
@@ -17,9 +18,9 @@ Run = Callable[[Callable[..., Any], Iterable[Any]], Iterator[Any]]
 
 @contextmanager
 def workers(n_threads: int | None) -> Iterator[Run]:
-    """Runner of jobs on some threads, by default as many as there are processors."""
+    """Runner of jobs on some threads, by default as many as there are processors to use."""
     if n_threads is None:
-        n_threads = min(os.cpu_count() or 1, _MAX_THREADS)
+        n_threads = min(count_processors(), _MAX_THREADS)
     if n_threads == 1:
         yield run_here
         return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -236,3 +237,30 @@ def export(
     target = format_of(path)
     with atomic_output(path) as stream:
         write_mesh(mesh, stream, target, limits=limits, **options)
+
+
+def data_uri(
+    mesh: Mesh, *, limits: Limits = DEFAULT_LIMITS, **options: Unpack[ExportOptions]
+) -> str:
+    """Data URI of a mesh as SVG, to stand in quotes where HTML or CSS expect an address.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    limits : Limits
+        Limits on the mesh.
+    **options
+        As :func:`export` takes them for SVG.
+
+    Raises
+    ------
+    TypeError
+        If SVG has no such option.
+    ValueError
+        If an option is none that SVG knows.
+    LimitError
+        If the mesh is more than `limits` allow.
+    """
+    stream = io.BytesIO()
+    write_mesh(mesh, stream, DATA_URI, limits=limits, **options)
+    return stream.getvalue().decode("ascii")

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeVar, cast
 
 from numba import njit
-from numba.core import event
-from numba.core.caching import IndexDataCacheFile
+from numba.core import config, event
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    InTreeCacheLocator,
+    NullCache,
+    UserProvidedCacheLocator,
+)
+
+from vmesh.errors import shown
+from vmesh.kernels.cache_files import CacheFile, TemporaryLocator
 
 if TYPE_CHECKING:
     from numba.core.event import Event
@@ -50,46 +60,92 @@ def inner_kernel(function: Function) -> Function:
     return cast("Function", njit(**_INNER_OPTIONS)(function))
 
 
+def take_trouble() -> str | None:
+    """A sentence on why compiled code was not kept, once after each time that it was not."""
+    sentence = _trouble[-1] if _trouble else None
+    _trouble.clear()
+    return sentence
+
+
+_trouble: Final[list[str]] = []
+
+
 def _cached(function: Function, options: dict[str, Any]) -> Function:
     """Compile a function, and keep it where there is a place for that."""
-    try:
-        dispatcher = njit(cache=True, **options)(function)
-    except RuntimeError:  # Numba found no folder that it may write its cache to.
-        return cast("Function", njit(**options)(function))
-    kept = getattr(dispatcher, "_cache", None)  # None where Numba is told not to compile.
-    if kept is not None:
-        stamp = kept._impl.locator.get_source_stamp(), _digest_of_sources()
-        kept._cache_file = _CacheFile(kept.cache_path, kept._impl.filename_base, stamp)
+    dispatcher = njit(**options)(function)
+    if hasattr(dispatcher, "_cache"):  # It has none where Numba is told not to compile.
+        try:
+            dispatcher._cache = _Cache(function)
+        except (RuntimeError, OSError):  # There is no folder that could be written.
+            dispatcher._cache = _NoCache()
     return cast("Function", dispatcher)
 
 
-class _CacheFile(IndexDataCacheFile):  # type: ignore[misc]
-    """Compiled code on disk that is good for one state of all kernels, and never an obstacle.
+class _Cache(FunctionCache):  # type: ignore[misc]
+    """Compiled code of a function, kept on disk as Numba does, and never an obstacle.
 
     Numba compares the stamp of the function's own file, but the code of the kernels that it calls,
     from whatever file, is part of what is kept. And it fails at files that are damaged, or name
-    what an earlier version had; here they count as none, and are written anew.
+    what an earlier version had, and where nothing can be written; here such a file counts as none,
+    and code that cannot be kept is compiled again by the next process.
     """
 
-    def _load_index(self) -> dict[Any, str]:
-        try:
-            index: dict[Any, str] = super()._load_index()
-        except Exception:  # Whatever the unpickling of bytes may raise.
-            return {}
-        return index
+    class _impl_class(CompileResultCacheImpl):  # type: ignore[misc]
+        _locator_classes: ClassVar = [*CompileResultCacheImpl._locator_classes, TemporaryLocator]
 
-    def _load_data(self, name: str) -> tuple[Any, ...]:
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)
+        stamp = self._impl.locator.get_source_stamp(), _digest_of_sources()
+        self._cache_file = CacheFile(self.cache_path, self._impl.filename_base, stamp)
+        # What others filled and we may only read, such as what came with a container.
+        self._given = [
+            CacheFile(path, self._impl.filename_base, stamp)
+            for path in _paths_before(self._impl.locator, function)
+        ]
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Compiled code for a signature, or None."""
+        target_context.refresh()
+        key = self._index_key(sig, target_context.codegen())
+        for file in (self._cache_file, *self._given):
+            with suppress(Exception):  # Whatever another version may raise.
+                kept = file.load(key)
+                if kept is not None:
+                    return self._impl.rebuild(target_context, kept)
+        return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep compiled code, if that can be."""
         try:
-            code: tuple[Any, ...] = super()._load_data(name)
-            if not isinstance(code, tuple):
-                raise TypeError(f"expected a tuple, got {code!r}")
+            self._save_overload(sig, data)
         except Exception as error:
-            raise OSError(f"{name} is no compiled code") from error  # Then Numba compiles.
-        return code
+            reason = error.strerror if isinstance(error, OSError) else None
+            _tell(f"in {shown(self.cache_path)}: {reason or type(error).__name__}")
 
-    def save(self, key: Any, data: Any) -> None:
-        with suppress(OSError):
-            super().save(key, data)
+
+class _NoCache(NullCache):  # type: ignore[misc]
+    """No place for the compiled code of a function."""
+
+    def save_overload(self, sig: Any, cres: Any) -> None:
+        """Say that it is not kept."""
+        _tell("as no folder for it can be written")
+
+
+def _tell(reason: str) -> None:
+    _trouble.append(
+        f"compiled code could not be kept {reason}; every run compiles it anew until "
+        "NUMBA_CACHE_DIR or XDG_CACHE_HOME names a folder that can be written"
+    )
+
+
+def _paths_before(locator: Any, function: Callable[..., Any]) -> list[str]:
+    """Folders that Numba would rather have kept a function's code in, but could not write."""
+    if isinstance(locator, UserProvidedCacheLocator):
+        return []
+    before = [UserProvidedCacheLocator] if getattr(config, "CACHE_DIR", "") else []
+    if type(locator) is not InTreeCacheLocator:
+        before.append(InTreeCacheLocator)
+    return [cls(function, inspect.getfile(function)).get_cache_path() for cls in before]
 
 
 @cache
