@@ -76,7 +76,7 @@ def test_a_misspelt_option_of_a_format_is_refused_by_its_name(
 def test_an_option_of_another_format_is_refused_with_those_that_there_are(
     mesh: vmesh.Mesh, tmp_path: Path
 ) -> None:
-    known = "one of mode, backend, page_width"
+    known = "one of mode, backend, page_width, page_size, orientation, margin"
     with pytest.raises(TypeError, match=f"^PDF has no option 'tolerance': expected {known}$"):
         vmesh.export(mesh, tmp_path / "a.pdf", tolerance=2.0)
     known = "one of scale, width, height, transform, supersample"

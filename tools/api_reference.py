@@ -26,7 +26,14 @@ TARGET: Final = Path(__file__).parents[1] / "docs" / "api.md"
 CHAPTERS: Final = {
     "Pixels, meshes, files": ("encode", "Settings", "render", "load", "loads", "dump", "dumps"),
     "The mesh": ("Mesh", "Metadata", "ColorLattice"),
-    "Other formats and programs": ("export", "import_mesh", "paint_mesh", "register"),
+    "Other formats and programs": (
+        "export",
+        "export_album",
+        "data_uri",
+        "import_mesh",
+        "paint_mesh",
+        "register",
+    ),
     "Reports": ("study", "Study"),
     "Limits and errors": (
         *("Limits", "VmeshError", "FormatError", "LimitError", "ImageError", "MeshError"),

@@ -7,6 +7,8 @@ The public names, loaded when they are first used, so that ``import vmesh`` stay
     mesh = vmesh.load("photo.vmesh")       file -> Mesh;  loads takes the bytes
     array = vmesh.render(mesh, scale=2)    Mesh -> pixels
     vmesh.export(mesh, "photo.svg")        Mesh -> SVG, PDF, PNG, PLY ... by the file's name
+    text = vmesh.data_uri(mesh)            Mesh -> SVG in the place of an address
+    vmesh.export_album(meshes, "a.pdf")    Meshes -> PDF, a page each
     mesh = vmesh.import_mesh("mesh.ply")   PLY, OBJ, glTF or text -> Mesh
     vmesh.paint_mesh(mesh, context)        Mesh -> any cairo context
     vmesh.study(array)                     a report on the photograph, shown by notebooks
@@ -34,9 +36,10 @@ if TYPE_CHECKING:
         VmeshError,
     )
     from vmesh.formats.models.mesh_import import import_mesh
+    from vmesh.formats.pdf.album import export_album
     from vmesh.formats.pdf.cairo_backend import paint_mesh
     from vmesh.formats.raster.rendering import render
-    from vmesh.formats.registry import export
+    from vmesh.formats.registry import data_uri, export
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh, Metadata
     from vmesh.pillow_plugin import register
@@ -57,10 +60,12 @@ __all__ = [
     "Settings",
     "Study",
     "VmeshError",
+    "data_uri",
     "dump",
     "dumps",
     "encode",
     "export",
+    "export_album",
     "import_mesh",
     "load",
     "loads",
@@ -83,10 +88,12 @@ _HOMES: Final = {
     "Settings": "vmesh.encoder.settings",
     "Study": "vmesh.report.study",
     "VmeshError": "vmesh.errors",
+    "data_uri": "vmesh.formats.registry",
     "dump": "vmesh.codec.stream",
     "dumps": "vmesh.codec.writer",
     "encode": "vmesh.encoder.pipeline",
     "export": "vmesh.formats.registry",
+    "export_album": "vmesh.formats.pdf.album",
     "import_mesh": "vmesh.formats.models.mesh_import",
     "load": "vmesh.codec.stream",
     "loads": "vmesh.codec.reader",

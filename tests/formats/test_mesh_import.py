@@ -196,6 +196,167 @@ def test_colours_of_gltf_may_be_of_any_kind(kind: str, tmp_path: Path) -> None:
     assert np.abs(np.array(reds[1:3]) - [124, 188]).max() <= 1
 
 
+PALETTE: Final = [(10, 20, 30), (255, 0, 128), (0, 0, 0), (1, 250, 99)]
+CODES: Final = {"uchar": "B", "ushort": "H", "short": "h", "int": "i", "float": "f", "double": "d"}
+
+
+def coloured_ply(
+    order: str,
+    kind: str,
+    largest: float,
+    *,
+    names: Sequence[str] = ("red", "green", "blue"),
+    alpha: tuple[str, float] | None = None,
+) -> bytes:
+    """A PLY file with the palette in a type and a range; binary if it has an order."""
+    kinds = ["float"] * 3 + [kind] * 3 + ([alpha[0]] if alpha else [])
+    properties = [*"xyz", *names, *(["alpha"] if alpha else [])]
+    form = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    header = f"ply\nformat {form} 1.0\nelement vertex 4\n"
+    header += "".join(f"property {k} {p}\n" for k, p in zip(kinds, properties, strict=True))
+    header += "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = []
+    for (x, y, z, *_), color in zip(SQUARE, PALETTE, strict=True):
+        values = [c / 255 * largest for c in color]
+        values += [0.5 * alpha[1]] if alpha else []
+        cells = zip(kinds[3:], values, strict=True)
+        rows.append([x, y, z, *(v if k in ("float", "double") else round(v) for k, v in cells)])
+    faces = [[3, *face] for face in HALVES]
+    if not order:
+        return (header + "".join(" ".join(map(str, row)) + "\n" for row in rows + faces)).encode()
+    vertex = order + "".join(CODES[k] for k in kinds)
+    body = b"".join(struct.pack(vertex, *row) for row in rows)
+    return header.encode() + body + b"".join(struct.pack(f"{order}B3i", *row) for row in faces)
+
+
+def palette_of(mesh: vmesh.Mesh) -> list[tuple[int, ...]]:
+    """Red, green and blue of the corners, in the order of `SQUARE`."""
+    # In the file y points up.
+    return [tuple(mesh.plain_colors[i, :3].tolist()) for i in (2, 3, 0, 1)]
+
+
+@pytest.mark.parametrize("order", ["", "<", ">"])
+@pytest.mark.parametrize(
+    ("kind", "largest"),
+    [
+        ("uchar", 255), ("ushort", 255), ("ushort", 65535), ("short", 255), ("int", 255),
+        ("float", 1), ("float", 255), ("double", 1), ("double", 255),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("alpha", [None, ("uchar", 255), ("float", 1), ("ushort", 65535)])
+def test_the_range_of_colours_in_ply_is_found(
+    order: str, kind: str, largest: float, alpha: tuple[str, float] | None, tmp_path: Path
+) -> None:
+    mesh = read(tmp_path, "mesh.ply", coloured_ply(order, kind, largest, alpha=alpha))
+    assert palette_of(mesh) == PALETTE
+    assert mesh.n_components == (4 if alpha else 3)
+    if alpha:
+        assert np.abs(mesh.plain_colors[:, 3].astype(int) - 127).max() <= 1
+
+
+@pytest.mark.parametrize("order", ["", "<", ">"])
+@pytest.mark.parametrize("names", [("diffuse_red", "diffuse_green", "diffuse_blue"), tuple("rgb")])
+def test_colours_in_ply_have_names_of_several_kinds(
+    order: str, names: Sequence[str], tmp_path: Path
+) -> None:
+    mesh = read(tmp_path, "mesh.ply", coloured_ply(order, "uchar", 255, names=names))
+    assert palette_of(mesh) == PALETTE
+
+
+@pytest.mark.parametrize("order", ["", "<", ">"])
+@pytest.mark.parametrize("n_tags", [0, 2])
+def test_faces_of_ply_may_have_several_numbers_of_corners(
+    order: str, n_tags: int, tmp_path: Path
+) -> None:
+    ring = [(0, 0), (2, 0), (3, 0), (4, 0), (4, 4), (0, 4), (3, 1)]
+    rows = [(x, y, 0, 10 * x, 10 * y, 0) for x, y in ring]
+    # A pentagon, a quad and triangles; the pentagon's first corner sees all others.
+    faces = [(6, 3, 4), (5, 0, 1, 6), (6, 4, 5), (1, 2, 6), (2, 3, 6)]
+    if not order:
+        text = ply(rows, faces)
+        assert read(tmp_path, "mesh.ply", text).n_triangles == 6
+        return
+    header = ply(rows, faces, kind="binary").decode()
+    header = header.replace(
+        "binary", {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    )
+    header = header.replace(
+        "end_header", "".join(f"property uchar t{i}\n" for i in range(n_tags)) + "end_header"
+    )
+    vertices = b"".join(struct.pack(f"{order}3f3B", *row) for row in rows)
+    body = b"".join(
+        struct.pack(f"{order}B{len(f)}i{n_tags}B", len(f), *f, *[1] * n_tags) for f in faces
+    )
+    mesh = read(tmp_path, "mesh.ply", header.encode() + vertices + body)
+    assert mesh == read(tmp_path, "text.ply", ply(rows, faces))
+    with pytest.raises(vmesh.MeshError, match="damaged"):
+        read(tmp_path, "cut.ply", header.encode() + vertices + body[:-6])
+
+
+@pytest.mark.parametrize("largest", [1, 255])
+@pytest.mark.parametrize("separator", [" ", "\t", "  "])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_the_range_of_colours_in_obj_is_found(
+    largest: int, separator: str, end: str, tmp_path: Path
+) -> None:
+    lines = [
+        separator.join(map(str, ("v", x, y, z, *(c if largest == 255 else c / 255 for c in color))))
+        for (x, y, z, *_), color in zip(SQUARE, PALETTE, strict=True)
+    ]
+    text = end.join([*lines, "f 1 2 3", "f -3 -1 -2", ""])
+    assert palette_of(read(tmp_path, "mesh.obj", text.encode())) == PALETTE
+
+
+def of_gltf(folder: Path, factor: float) -> vmesh.Mesh:
+    """What is imported of a glTF file whose white is another number."""
+    ours = vmesh.Mesh.from_colors(
+        4,
+        4,
+        [(0, 0), (4, 0), (0, 4), (4, 4)],
+        [(0, 1, 2), (1, 3, 2)],
+        np.full((4, 3), 255, np.uint8),
+    )
+    vmesh.export(ours, folder / "white.glb")
+    data = (folder / "white.glb").read_bytes()
+    (size,) = struct.unpack_from("<I", data, 12)
+    tree = json.loads(data[20 : 20 + size])
+    index = tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]
+    values = np.full((4, 4), factor, "<f4").tobytes()
+    length = tree["buffers"][0]["byteLength"]
+    tree["accessors"][index] |= {"componentType": 5126, "bufferView": len(tree["bufferViews"])}
+    tree["bufferViews"].append({"buffer": 0, "byteOffset": length, "byteLength": len(values)})
+    tree["buffers"][0]["byteLength"] += len(values)
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[28 + size :] + values
+    head = struct.pack("<4sII I4s", b"glTF", 2, 28 + len(text) + len(rest), len(text), b"JSON")
+    return read(folder, "mesh.glb", head + text + struct.pack("<I4s", len(rest), b"BIN\0") + rest)
+
+
+def test_colours_of_gltf_go_from_0_to_1(tmp_path: Path) -> None:
+    assert (of_gltf(tmp_path, 1.01).plain_colors == 255).all()
+    with pytest.raises(vmesh.MeshError, match="expected colours from 0 to 1, got 0 to 255"):
+        of_gltf(tmp_path, 255)
+
+
+@pytest.mark.parametrize("color", [(102, 102, 102), (255, 255, 255), (255, 0, 0), (0, 0, 0)])
+@pytest.mark.parametrize("suffix", ["ply", "obj", "glb"])
+def test_one_colour_in_all_of_a_mesh_comes_back(
+    color: tuple[int, int, int], suffix: str, tmp_path: Path
+) -> None:
+    square = [(0, 0), (4, 0), (0, 4), (4, 4)]
+    mesh = vmesh.Mesh.from_colors(4, 4, square, [(0, 1, 2), (1, 3, 2)], np.array([color] * 4))
+    path = tmp_path / f"mesh.{suffix}"
+    vmesh.export(mesh, path)
+    back = vmesh.import_mesh(path).plain_colors
+    assert (np.broadcast_to(back, (4, 3)) == color).all()
+
+
+def of_floats(*values: float) -> bytes:
+    rows = [(*v[:3], *([value] * 3)) for v, value in zip(SQUARE, values, strict=True)]
+    return ply(rows, colors=COLORS.replace("uchar", "float"))
+
+
 DAMAGED: Final[dict[str, tuple[bytes, str]]] = {
     "an empty file.ply": (b"", "damaged"),
     "another file.ply": (b"\x89PNG\r\n" * 9, "damaged"),
@@ -244,6 +405,16 @@ DAMAGED: Final[dict[str, tuple[bytes, str]]] = {
     "a large index.obj": (obj(faces=[(1, 2, 30), (2, 4, 3)]), "damaged"),
     "a negative index.obj": (obj(faces=[(-9, 2, 3), (2, 4, 3)]), "damaged"),
     "index 0.obj": (obj(faces=[(0, 1, 2), (2, 4, 3)]), "no area|cover"),
+    "colours of 16 bits.obj": (
+        obj([(*v[:3], *[65535 * 255] * 3) for v in SQUARE]), "to 255, or 16-bit integers"
+    ),
+    "an opacity or a weight.obj": (
+        obj(SQUARE).replace(b"v 0 0 0", b"v 0 0 0 1.0", 1), "more than x y z and red green blue"
+    ),
+    "light beyond white.ply": (of_floats(0, 0.5, 1, 3.5), "from 0 to 1, or to 255"),
+    "colours beyond all ranges.ply": (of_floats(0, 0.5, 1, 1023), "from 0 to 1, or to 255"),
+    "a negative colour.ply": (of_floats(-3, 0, 100, 255), "from 0 to 1, or to 255"),
+    "a colour that is no number.ply": (of_floats(0, 0, float("nan"), 1), "not a number"),
     "no colours.obj": (obj([v[:3] for v in SQUARE]), "colour at every vertex"),
     "colours for some.obj": (obj([*SQUARE[:3], SQUARE[3][:3]]), "colour at every vertex"),
     "an empty file.glb": (b"", "header of a .glb file"),

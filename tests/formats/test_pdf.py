@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,8 @@ import vmesh
 from tests.formats.drawings import compare
 from tests.formats.renderers import PDF_RENDERERS
 from vmesh.arrays import UInt8Array
-from vmesh.formats.pdf.document import write_pdf
+from vmesh.formats.pdf.document import write_album, write_pdf
+from vmesh.formats.pdf.page_size import Layout
 from vmesh.kernels.delaunay import delaunay
 from vmesh.mesh import Mesh, Metadata
 
@@ -146,6 +148,7 @@ def test_the_widest_canvas_is_drawn(renderer: str, subdivision: int, tmp_path: P
     with opened(data) as document:
         page: Any = document.pages[0].obj
         unit = float(page.UserUnit)
+        assert document.Root.Version == "/1.6"
         assert max(map(float, page.MediaBox)) <= 14_400
         assert [unit * float(end) for end in page.MediaBox[2:]] == pytest.approx([65_535, 64])
         assert (len(page.Resources.Shading) > 1) == (subdivision == 3)
@@ -173,6 +176,155 @@ def test_the_page_is_as_wide_as_asked_for_or_as_the_resolution_says() -> None:
         with opened(written(mesh, page_width=width)) as document:
             box = [float(end) for end in document.pages[0].obj.MediaBox]
         assert box == pytest.approx([0, 0, *size], abs=1e-4)
+
+
+@pytest.mark.parametrize("backend", ["native", "cairo"])
+@pytest.mark.parametrize("name", ["photograph", "grey", "alpha", "tilted"])
+def test_a_page_is_of_version_1_4(meshes: dict[str, Mesh], name: str, backend: str) -> None:
+    data = written(meshes[name], backend=backend)
+    assert data.startswith(b"%PDF-1.4\n")
+    with opened(data) as document:
+        assert document.check_pdf_syntax() == []
+        assert "/Version" not in document.Root
+        assert not any("/ObjStm" in repr(item) for item in document.objects)
+
+
+@pytest.mark.parametrize("backend", ["native", "cairo"])
+@pytest.mark.parametrize(
+    ("options", "page", "box"),
+    [
+        ({"page_size": "A4"}, (297, 210), (0, 30.75, 297, 148.5)),
+        ({"page_size": "a4", "margin": "10mm"}, (297, 210), (10, 35.75, 277, 138.5)),
+        ({"page_size": "A4", "orientation": "portrait"}, (210, 297), (0, 96, 210, 105)),
+        ({"page_size": " 210 x 297 mm"}, (210, 297), (0, 96, 210, 105)),
+        ({"page_size": "100mmx50mm", "margin": "5mm"}, (100, 50), (10, 5, 80, 40)),
+        ({"page_size": "20cm\u00d710cm", "orientation": "portrait"}, (100, 200), (0, 75, 100, 50)),
+        ({"page_size": "B5"}, (250, 176), (0, 25.5, 250, 125)),
+        ({"page_size": "letter"}, (279.4, 215.9), (0, 38.1, 279.4, 139.7)),
+        ({"page_width": "100mm", "margin": "1cm"}, (100, 60), (10, 10, 80, 40)),
+        ({"margin": "10pt"}, (620 / 72 * 25.4, 320 / 72 * 25.4), None),
+    ],
+)
+def test_a_picture_is_in_the_middle_of_its_paper_as_large_as_it_fits(
+    options: dict[str, Any],
+    page: tuple[float, float],
+    box: tuple[float, ...] | None,
+    backend: Any,
+    tmp_path: Path,
+) -> None:
+    mesh = pair_of_triangles(600, 300)
+    path = tmp_path / "page.pdf"
+    vmesh.export(mesh, path, backend=backend, **options)
+    with pikepdf.open(path) as document:
+        ends = [float(end) / 72 * 25.4 for end in document.pages[0].obj.MediaBox]
+    assert ends == pytest.approx([0, 0, *page], abs=1e-3)
+    drawn = PDF_RENDERERS["mupdf"](path, 1)
+    rows, columns = np.nonzero((drawn < 255).any(axis=2))
+    left, top, width, height = (10, 10, 600, 300) if box is None else np.array(box) / 25.4 * 72
+    assert columns.min() == pytest.approx(left, abs=1.5)
+    assert rows.min() == pytest.approx(top, abs=1.5)
+    assert columns.max() + 1 == pytest.approx(left + width, abs=1.5)
+    assert rows.max() + 1 == pytest.approx(top + height, abs=1.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"page_size": "A11"}, "expected a page size such as A4"),
+        ({"page_size": "wide"}, "expected a page size such as A4"),
+        ({"page_size": "10mm"}, "expected a page size such as A4"),
+        ({"page_size": "0x10mm"}, "expected a page size such as A4"),
+        ({"page_size": "1e9x10mm"}, "expected a page size such as A4"),
+        ({"page_size": "A4", "page_width": "10mm"}, "a size or a width"),
+        ({"orientation": "portrait"}, "an orientation is that of a page size"),
+        ({"page_size": "A4", "orientation": "upright"}, "expected orientation to be one of"),
+        ({"page_size": "A4", "margin": "105mm"}, "leave no room"),
+        ({"page_width": "20mm", "margin": "10mm"}, "leave no room"),
+        ({"margin": "-1mm"}, "expected a length"),
+        ({"margin": "0 parsec"}, "expected a length"),
+    ],
+)
+def test_pages_without_sense_are_refused(
+    options: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        vmesh.export(pair_of_triangles(2, 2), tmp_path / "a.pdf", **options)
+    assert not list(tmp_path.iterdir())
+
+
+def titles_of(document: pikepdf.Pdf) -> list[str]:
+    return [str(item.title) for item in document.open_outline().root]
+
+
+@pytest.mark.parametrize("backend", ["native", "cairo"])
+def test_an_album_has_a_page_for_each_mesh_with_its_title(
+    meshes: dict[str, Mesh], backend: Any, tmp_path: Path
+) -> None:
+    names = ["photograph", "grey", "alpha", "pair"]
+    titles = ["cup (1)", "Kaffee \u2615", "back\\slash", "4"]
+    path = tmp_path / "album.pdf"
+    vmesh.export_album(
+        (meshes[name] for name in names), path, titles=titles, backend=backend, margin="3pt"
+    )
+    with pikepdf.open(path) as document:
+        assert document.check_pdf_syntax() == []
+        assert titles_of(document) == titles
+        for item, page in zip(document.open_outline().root, document.pages, strict=True):
+            assert item.destination[0].objgen == page.obj.objgen  # type: ignore[index]
+        for i, name in enumerate(names):
+            single = pikepdf.new()
+            single.pages.append(document.pages[i])
+            single.save(tmp_path / "single.pdf")
+            drawn = PDF_RENDERERS["ghostscript"](tmp_path / "single.pdf", 1)[3:-3, 3:-3]
+            assert compare(drawn, meshes[name], 1).mean <= 6
+
+
+def test_titles_of_an_album_are_those_of_the_pictures_or_numbers(tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif[270] = "saucer"
+    titled = pair_of_triangles(9, 9).replaced(
+        metadata=Metadata(exif=exif.tobytes().removeprefix(b"Exif\0\0"))
+    )
+    path = tmp_path / "album.pdf"
+    vmesh.export_album([pair_of_triangles(9, 9), titled], path, strip="none")
+    with pikepdf.open(path) as document:
+        assert titles_of(document) == ["1", "saucer"]
+
+
+def test_equal_profiles_of_an_album_are_stored_once(tmp_path: Path) -> None:
+    own = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes() + b"\0" * 4
+    mesh = pair_of_triangles(9, 9)
+    path = tmp_path / "album.pdf"
+    vmesh.export_album([mesh, mesh.replaced(metadata=Metadata(icc=own))] * 10, path)
+    with pikepdf.open(path) as document:
+        spaces = [page.obj.Resources.Shading.S0.ColorSpace[1].objgen for page in document.pages]
+    assert spaces == spaces[:2] * 10
+    assert spaces[0] != spaces[1]
+
+
+def test_pages_of_an_album_are_written_as_they_come(meshes: dict[str, Mesh]) -> None:
+    stream = io.BytesIO()
+    sizes = []
+
+    def pages() -> Iterator[tuple[str, Mesh]]:
+        for name in ("photograph", "adaptive", "grey"):
+            sizes.append(len(stream.getvalue()))
+            yield name, meshes[name]
+
+    write_album(pages(), stream, layout=Layout())
+    assert sizes[0] < 100
+    assert sizes[1] > 1000
+    assert sizes[2] > sizes[1] + 500
+
+
+def test_an_album_without_sense_leaves_no_file(tmp_path: Path) -> None:
+    path, mesh = tmp_path / "album.pdf", pair_of_triangles(4, 4)
+    for meshes, titles in (([], None), ([mesh], []), ([mesh], ["a", "b"])):
+        with pytest.raises(ValueError, match="expected a"):
+            vmesh.export_album(meshes, path, titles=titles)
+    with pytest.raises(vmesh.LimitError):
+        vmesh.export_album([mesh], path, limits=vmesh.Limits(max_vertices=3))
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("width", ["", "wide", "-3mm", "0pt", "5 parsec", "1e9pt", "99999999pt"])

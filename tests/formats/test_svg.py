@@ -104,6 +104,53 @@ def test_mode_auto_keeps_within_its_tolerance(
     assert found.inside <= 4.0 + 0.5  # and the rounding of our raster
 
 
+def unblended(path: Path) -> Path:
+    """The same drawing as a program shows it that knows no blend modes."""
+    copy = path.with_suffix(".plain.svg")
+    copy.write_bytes(path.read_bytes().replace(b' style="mix-blend-mode:lighten"', b""))
+    assert copy.read_bytes() != path.read_bytes()
+    return copy
+
+
+@pytest.mark.parametrize("mode", ["exact", "auto"])
+def test_layers_are_about_the_picture_in_programs_without_blend_modes(
+    drawings: dict[Mode, Path], detailed: vmesh.Mesh, mode: Mode
+) -> None:
+    shown = vmesh.render(detailed)
+    flat = error_of(mean_of_pixels(detailed, shown), shown)
+    for drawn in (
+        SVG_RENDERERS["cairosvg"](drawings[mode], 1),
+        SVG_RENDERERS["resvg"](unblended(drawings[mode]), 1),
+    ):
+        assert error_of(drawn, shown) < flat / 3
+
+
+@pytest.mark.parametrize("colors", ["any", "dark", "bright", "one channel"])
+def test_the_last_layer_is_nowhere_lighter_than_the_picture(
+    colors: str, detailed: vmesh.Mesh, tmp_path: Path
+) -> None:
+    drawn_colors = np.random.default_rng(3).integers(0, 256, (detailed.n_vertices, 3))
+    if colors == "dark":
+        drawn_colors //= 20
+    elif colors == "bright":
+        drawn_colors = 255 - drawn_colors // 20
+    elif colors == "one channel":
+        drawn_colors[:, 1:] = 0
+    mesh = vmesh.Mesh.from_colors(
+        detailed.width,
+        detailed.height,
+        detailed.vertices,
+        detailed.triangles,
+        drawn_colors.astype(np.uint8),
+        subdivision=detailed.subdivision,
+    )
+    path = tmp_path / "exact.svg"
+    vmesh.export(mesh, path, mode="exact")
+    shown = vmesh.render(mesh).astype(int)
+    assert np.abs(SVG_RENDERERS["resvg"](path, 1) - shown).max() <= 2
+    assert (SVG_RENDERERS["resvg"](unblended(path), 1) - shown).max() <= 2
+
+
 @pytest.mark.parametrize("renderer", SVG_RENDERERS)
 def test_merged_regions_take_fewer_bytes_and_stay_far_closer_than_flat_colors(
     drawings: dict[Mode, Path], detailed: vmesh.Mesh, renderer: str, tmp_path: Path
@@ -393,6 +440,69 @@ def test_a_document_is_valid_xml_with_a_view_box(drawings: dict[Mode, Path]) -> 
     fills = {path.get("fill", "") for path in root.iter(f"{SVG}path")}
     references = {fill[5:-1] for fill in fills if fill.startswith("url(#")}
     assert references == {element.get("id") for element in root.iter(f"{SVG}linearGradient")}
+
+
+def ids_of(path: Path) -> set[str]:
+    """Ids in a document, which are all that it refers to."""
+    root = etree.parse(path).getroot()
+    ids = {element.get("id", "") for element in root.iter()} - {""}
+    values = {str(value) for element in root.iter() for value in element.attrib.values()}
+    assert ids == {value[5:-1] for value in values if value.startswith("url(#")}
+    return ids
+
+
+@pytest.mark.parametrize("style", [{}, {"mode": "exact"}, {"merge": 50.0}])
+def test_different_drawings_share_no_ids(
+    grey_and_alpha: dict[str, vmesh.Mesh], style: dict[str, Any], tmp_path: Path
+) -> None:
+    mesh = grey_and_alpha["alpha"]
+    colors = mesh.plain_colors.copy()
+    colors[0, 0] ^= 1
+    turned = mesh.transform((-1, 0, 0, 1, 0, 0))
+    other = vmesh.Mesh.from_colors(
+        mesh.width,
+        mesh.height,
+        mesh.vertices,
+        mesh.triangles,
+        colors,
+        subdivision=mesh.subdivision,
+    )
+    found = []
+    for each in (mesh, turned, other):
+        vmesh.export(each, tmp_path / "a.svg", **style)
+        found.append(ids_of(tmp_path / "a.svg"))
+    vmesh.export(mesh, tmp_path / "a.svg", **style, seams="trapping")
+    found.append(ids_of(tmp_path / "a.svg"))
+    assert sum(map(len, found)) == len(set().union(*found))
+
+
+def test_the_same_drawing_of_another_size_has_the_same_ids(
+    small: vmesh.Mesh, tmp_path: Path
+) -> None:
+    vmesh.export(small, tmp_path / "a.svg")
+    vmesh.export(small, tmp_path / "b.svg", width="100%")
+    assert ids_of(tmp_path / "a.svg") == ids_of(tmp_path / "b.svg")
+
+
+def test_ids_begin_as_asked_and_no_two_prefixes_give_the_same(
+    grey_and_alpha: dict[str, vmesh.Mesh], tmp_path: Path
+) -> None:
+    found = []
+    for prefix in ("a", "ab", "a-", "_1", "Photo"):
+        vmesh.export(grey_and_alpha["alpha"], tmp_path / "a.svg", id_prefix=prefix)
+        found.append(ids_of(tmp_path / "a.svg"))
+        assert all(each.startswith(prefix) for each in found[-1])
+        VOCABULARY.assertValid(etree.parse(tmp_path / "a.svg"))
+    assert sum(map(len, found)) == len(set().union(*found))
+
+
+@pytest.mark.parametrize("prefix", ["", "1a", "-a", "a b", "a)", 'a"', "\u00e9", "a\n", 65 * "a"])
+def test_what_ids_cannot_begin_with_is_refused(
+    small: vmesh.Mesh, prefix: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match="expected ids to begin with a letter or _"):
+        vmesh.export(small, tmp_path / "a.svg", id_prefix=prefix)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("mode", ["gradient", "flat"])

@@ -21,11 +21,12 @@ from vmesh.cli.options import (
 from vmesh.cli.streams import STANDARD, read_photograph
 from vmesh.cli.vector import convert
 from vmesh.formats.metadata.privacy import Strip
-from vmesh.formats.registry import FORMATS, format_of
+from vmesh.formats.registry import DATA_URI, FORMATS, Format, format_of
 from vmesh.formats.svg.size import parse_length
-from vmesh.formats.svg.style import Mode, Seams, Style
+from vmesh.formats.svg.style import Mode, Seams, Style, check_id_prefix
 
 _MAKING: Final = Making(PICTURES_AND_MESHES, (".svg", ".svgz"), ".svg")
+_MAKING_OF_URIS: Final = Making(PICTURES_AND_MESHES, (".txt",), ".txt")
 
 
 @click.command("to-svg")
@@ -35,7 +36,8 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".svg", ".svgz"), ".svg")
     type=click.Choice(("gradient", "exact", "auto", "flat")),
     default="gradient",
     show_default=True,
-    help="What fills a triangle; exact takes three times the bytes of gradient.",
+    help="What fills a triangle. exact takes three times the bytes of gradient, and is about the "
+    "picture in programs without mix-blend-mode, such as CairoSVG, Skia and Qt.",
 )
 @click.option(
     "--tolerance",
@@ -56,7 +58,14 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".svg", ".svgz"), ".svg")
     type=click.Choice(("crisp", "trapping")),
     default="crisp",
     show_default=True,
-    help="How no seams show; trapping is for programs that smooth all edges, as Qt and Skia.",
+    help="How no seams show; trapping is for programs that smooth all edges: Inkscape, Qt, Skia, "
+    "svglib, and others that know no shape-rendering.",
+)
+@click.option(
+    "--id-prefix",
+    metavar="TEXT",
+    callback=checked_by(check_id_prefix),
+    help="What ids begin with; else a digest of the drawing, so that several fit into one page.",
 )
 @click.option(
     "--fit",
@@ -75,6 +84,11 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".svg", ".svgz"), ".svg")
     callback=checked_by(parse_length),
     help="Height; one of the two alone keeps the proportions.",
 )
+@click.option(
+    "--data-uri",
+    is_flag=True,
+    help="Write text for src=\"...\" or url('...'), in either quotes, to OUTPUT.txt or to -.",
+)
 @picture_options
 @strip_option("private")
 @encoder_options
@@ -85,6 +99,8 @@ def command(
     tolerance: float,
     merge: float,
     seams: Seams,
+    id_prefix: str | None,
+    data_uri: bool,
     fit: str | None,
     width: str | None,
     height: str | None,
@@ -98,17 +114,23 @@ def command(
     INPUTs, also folders. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading, jobs = take_picture_options(options), take_jobs(options, _MAKING)
+    making = _MAKING_OF_URIS if data_uri else _MAKING
+    reading, jobs = take_picture_options(options), take_jobs(options, making)
     try:
         n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
     photograph = None if fit is None else read_photograph(fit, reading, limits)
 
+    def format_for(target: str) -> Format:
+        if data_uri:
+            return DATA_URI
+        return FORMATS[".svg"] if target == STANDARD else format_of(target)
+
     def work(job: Job) -> None:
         convert(
             job,
-            FORMATS[".svg"] if job.target == STANDARD else format_of(job.target),
+            format_for(job.target),
             settings,
             reading,
             limits,
@@ -119,6 +141,7 @@ def command(
             tolerance=tolerance,
             merge=merge,
             seams=seams,
+            id_prefix=id_prefix,
             fit_to=photograph,
             width=width,
             height=height,

@@ -14,6 +14,8 @@ from vmesh.limits import Limits
 
 if TYPE_CHECKING:
     from vmesh.formats.picture.picture import Picture
+    from vmesh.mesh import Mesh
+    from vmesh.progress import Progress
 
 
 def convert(
@@ -33,17 +35,14 @@ def convert(
     `n_stages` is how many the writer reports; 0 for one that reports none. `fit_to`
     is a photograph, in whatever space, for the option `fit`. Other options are those of the format.
     """
-    from vmesh.encoder.pipeline import count_steps, encode_with
+    from vmesh.encoder.pipeline import count_steps
     from vmesh.formats.color.conversion import mesh_in_srgb, to_srgb
     from vmesh.mesh import Mesh
 
     given = read_mesh_or_photograph(job.source, reading, limits)
     n_steps = 1 if isinstance(given, Mesh) else 1 + count_steps(settings)
     with show_progress(f"converting{job.place}", n_steps + n_stages, quiet=quiet) as report:
-        if isinstance(given, Mesh):
-            mesh = given
-        else:
-            mesh = encode_with(given.array, settings, metadata=given.metadata, progress=report)
+        mesh = mesh_of(given, settings, report)
         if fit_to is not None:
             mesh = mesh_in_srgb(mesh)
             options["fit"] = to_srgb(fit_to.array, fit_to.metadata.icc)
@@ -51,3 +50,13 @@ def convert(
         if n_stages:
             options["progress"] = report
         job.write(lambda stream: write_mesh(mesh, stream, wanted, limits=limits, **options))
+
+
+def mesh_of(given: Mesh | Picture, settings: Settings, report: Progress) -> Mesh:
+    """A mesh as it is, or that of a photograph."""
+    from vmesh.encoder.pipeline import encode_with
+    from vmesh.mesh import Mesh
+
+    if isinstance(given, Mesh):
+        return given
+    return encode_with(given.array, settings, metadata=given.metadata, progress=report)

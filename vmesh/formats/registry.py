@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from inspect import Parameter, signature
 from pathlib import Path
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from vmesh.arrays import SampleArray
     from vmesh.formats.metadata.privacy import Strip
     from vmesh.formats.pdf.document import Backend
+    from vmesh.formats.pdf.page_size import Orientation
     from vmesh.formats.svg.size import Length
     from vmesh.formats.svg.style import Mode, Seams
     from vmesh.mesh.placement import Matrix
@@ -40,8 +42,12 @@ class ExportOptions(TypedDict, total=False):
     tolerance: float
     merge: float
     seams: Seams
+    id_prefix: str | None
     fit: SampleArray | None
     page_width: str | None
+    page_size: str | None
+    orientation: Orientation | None
+    margin: str | None
     backend: Backend
     ascii: bool
     progress: Progress | None
@@ -112,6 +118,10 @@ FORMATS: Final = {
     ".glb": Format("glTF", "vmesh.formats.models.mesh_files", "write_glb", has_profile=False),
     ".txt": Format("text", "vmesh.codec.text", "write_text"),
 }
+
+DATA_URI: Final = replace(
+    FORMATS[".svg"], module="vmesh.formats.svg.data_uri", function="write_data_uri"
+)
 
 # Formats that hold a mesh as other programs know it, which are read too.
 MESH_SUFFIXES: Final = (".ply", ".obj", ".glb", ".txt")
@@ -225,10 +235,13 @@ def export(
         unless given.
     seams : {"crisp", "trapping"}
         For SVG how no seams show.
+    id_prefix : str
+        For SVG what ids begin with, a digest of the drawing unless given: two different drawings
+        may be in one HTML page.
     fit : ndarray
         For SVG the photograph whose pixels the gradients are fitted to, in the mesh's profile.
-    page_width : str
-        For PDF, such as "210mm".
+    page_width, page_size, orientation, margin : str
+        For PDF, as for :func:`vmesh.export_album`.
     backend : {"native", "cairo"}
         For PDF what writes it.
     ascii : bool
@@ -251,3 +264,30 @@ def export(
     target = format_of(path)
     with atomic_output(path) as stream:
         write_mesh(mesh, stream, target, limits=limits, **options)
+
+
+def data_uri(
+    mesh: Mesh, *, limits: Limits = DEFAULT_LIMITS, **options: Unpack[ExportOptions]
+) -> str:
+    """Data URI of a mesh as SVG, to stand in quotes where HTML or CSS expect an address.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    limits : Limits
+        Limits on the mesh.
+    **options
+        As :func:`export` takes them for SVG.
+
+    Raises
+    ------
+    TypeError
+        If SVG has no such option.
+    ValueError
+        If an option is none that SVG knows.
+    LimitError
+        If the mesh is more than `limits` allow.
+    """
+    stream = io.BytesIO()
+    write_mesh(mesh, stream, DATA_URI, limits=limits, **options)
+    return stream.getvalue().decode("ascii")

@@ -25,6 +25,7 @@ import numpy.typing as npt
 
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.errors import LimitError, MeshError
+from vmesh.formats.models.colors import check_unit
 from vmesh.limits import Limits
 
 COLOR: Final = "_COLOR"  # the name under which colours pass
@@ -46,12 +47,17 @@ def linear_from_srgb(colors: UInt8Array) -> UInt16Array:
 
 
 def srgb_from_linear(colors: npt.NDArray[Any]) -> UInt8Array:
-    """RGBA of 8 bits, shape (n, 4), of colours in linear light: floats, or 8 or 16 bits."""
+    """RGBA of 8 bits, shape (n, 4), of colours in linear light: floats, or 8 or 16 bits.
+
+    Raises
+    ------
+    MeshError
+        If a float is not from 0 to 1.
+    """
     largest = np.iinfo(colors.dtype).max if colors.dtype.kind == "u" else 1
     values: Float64Array = np.ones((len(colors), 4))
     values[:, : colors.shape[1]] = colors / largest
-    if not np.isfinite(values).all():
-        raise MeshError("a colour is not a number")
+    check_unit(values)
     rgb = np.clip(values[:, :3], 0, 1)
     values[:, :3] = np.where(rgb <= 0.0031308, rgb * 12.92, 1.055 * rgb ** (1 / 2.4) - 0.055)
     return np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8)

@@ -45,22 +45,53 @@ def paint_mesh(mesh: Mesh, context: Any) -> None:
         pattern.paint(context)
 
 
-def write_cairo_pdf(mesh: Mesh, stream: BinaryIO, page: Page) -> None:
-    """Write a mesh as a PDF page of a size, through cairo, in sRGB."""
-    cairocffi, mesh = import_cairo(), mesh_in_srgb(mesh)
-    # Cairo cannot pass on an error of the stream it writes to: it gets one that has none.
-    buffer = io.BytesIO()
-    surface = cairocffi.PDFSurface(buffer, page.width, page.height)
-    description = Description.of(mesh.metadata)
-    surface.set_metadata(cairocffi.PDF_METADATA_CREATE_DATE, _CREATION_DATE)
-    surface.set_metadata(cairocffi.PDF_METADATA_TITLE, description.title)
-    surface.set_metadata(cairocffi.PDF_METADATA_AUTHOR, description.author)
-    context = cairocffi.Context(surface)
-    context.scale(page.width / mesh.width, page.height / mesh.height)
-    if mesh.n_components != 4 and mesh.covers_canvas:
-        # Shows where a viewer leaves the outermost row of pixels partly uncovered.
-        context.set_source_rgb(*with_alpha(mesh.plain_colors)[:, :3].mean(axis=0) / 255.0)
-        context.paint()
-    paint_mesh(mesh, context)
-    surface.finish()
-    stream.write(buffer.getvalue())
+class CairoAlbum:
+    """A PDF document that cairo writes, of version 1.4.
+
+    Parameters
+    ----------
+    stream : binary file
+    description : Description, optional
+        Of the only picture; without it the document has an outline.
+    """
+
+    def __init__(self, stream: BinaryIO, description: Description | None) -> None:
+        self._cairo = import_cairo()
+        self._stream = stream
+        # Cairo cannot pass on an error of the stream it writes to: it gets one that has none.
+        self._buffer = io.BytesIO()
+        self._surface: Any = self._cairo.PDFSurface(self._buffer, 1, 1)
+        self._surface.restrict_to_version(self._cairo.PDF_VERSION_1_4)
+        self._surface.set_metadata(self._cairo.PDF_METADATA_CREATE_DATE, _CREATION_DATE)
+        self._has_outline = description is None
+        if description is not None:
+            self._surface.set_metadata(self._cairo.PDF_METADATA_TITLE, description.title)
+            self._surface.set_metadata(self._cairo.PDF_METADATA_AUTHOR, description.author)
+        self._n_pages = 0
+
+    def add_page(self, mesh: Mesh, page: Page, title: str) -> None:
+        """Add a page, in sRGB."""
+        mesh = mesh_in_srgb(mesh)
+        if self._n_pages:
+            self._surface.show_page()
+        self._n_pages += 1
+        self._surface.set_size(page.width, page.height)
+        if self._has_outline:
+            link = f"page={self._n_pages} pos=[0 0]"
+            self._surface.add_outline(0, title, link, 0)
+        context, box = self._cairo.Context(self._surface), page.picture
+        context.translate(box.left, page.height - box.bottom - box.height)
+        context.scale(box.width / mesh.width, box.height / mesh.height)
+        if page.box is not None:
+            context.rectangle(0, 0, mesh.width, mesh.height)
+            context.clip()
+        if mesh.n_components != 4 and mesh.covers_canvas:
+            # Shows where a viewer leaves the outermost row of pixels partly uncovered.
+            context.set_source_rgb(*with_alpha(mesh.plain_colors)[:, :3].mean(axis=0) / 255.0)
+            context.paint()
+        paint_mesh(mesh, context)
+
+    def close(self) -> None:
+        """Write the file."""
+        self._surface.finish()
+        self._stream.write(self._buffer.getvalue())

@@ -16,6 +16,7 @@ import deflate
 import pydyf
 
 from vmesh.arrays import UInt8Array
+from vmesh.formats.pdf.file import PdfFile
 from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.pdf.shading import Shading, make_shadings
 from vmesh.mesh import Mesh
@@ -29,14 +30,14 @@ class MeshPainter:
 
     Parameters
     ----------
-    pdf : pydyf.PDF
-        The document, to which objects are added.
+    pdf : PdfFile
+        The file, to which objects are added.
     mesh : Mesh
     space : str or pydyf.Array
         Colour space of the mesh's colours without alpha.
     """
 
-    def __init__(self, pdf: Any, mesh: Mesh, space: Any) -> None:
+    def __init__(self, pdf: PdfFile, mesh: Mesh, space: Any) -> None:
         self._pdf = pdf
         self._mesh = mesh
         self._space = space
@@ -91,8 +92,8 @@ class MeshPainter:
         return pydyf.Dictionary({"Shading": shadings})
 
 
-def page_of(pdf: Any, size: Page, content: Any, resources: Any) -> Any:
-    """A page for a document, which is still to be added to it."""
+def page_of(pdf: PdfFile, size: Page, content: Any, resources: Any) -> Any:
+    """A page for a file, which is still to be added to it."""
     unit = size.user_unit
     page = pydyf.Dictionary({"Type": "/Page", "Parent": pdf.pages.reference})
     page["MediaBox"] = pydyf.Array([0, 0, size.width / unit, size.height / unit])
@@ -103,8 +104,8 @@ def page_of(pdf: Any, size: Page, content: Any, resources: Any) -> Any:
     return page
 
 
-def add(pdf: Any, item: Any) -> bytes:
-    """Add an object to a document; returns a reference to it."""
+def add(pdf: PdfFile, item: Any) -> bytes:
+    """Add an object to a file; returns a reference to it."""
     pdf.add_object(item)
     reference: bytes = item.reference
     return reference

@@ -2,16 +2,12 @@
 
 SVG knows no triangle gradient. Colours over a triangle are an affine function of the place; the
 best linear gradient is found in `regions.py` and written in `gradients.py`. A single channel of
-colour is drawn exactly, so that three layers, one for each channel, joined by `mix-blend-mode:
-screen`, show the mesh as it is.
+colour is drawn exactly, so that three layers, joined by `mix-blend-mode: lighten`, show the mesh as
+it is (`parts.py`).
 
 Seams: neighbouring anti-aliased edges would let the page shine through. Edges are crisp, and the
 same to the last digit on both sides; or regions are trapped, and reach under their neighbours
 (`outlines.py`). Alpha is drawn as a mask in the same manner.
-
-References
-----------
-W3C, "Compositing and Blending Level 1": the blend mode screen.
 """
 
 from __future__ import annotations
@@ -26,6 +22,7 @@ from vmesh.arrays import SampleArray, UInt8Array
 from vmesh.formats.metadata.description import Description
 from vmesh.formats.raster.rendering import scaled_positions
 from vmesh.formats.svg.drawing import Drawing
+from vmesh.formats.svg.ids import Ids, prefix_of
 from vmesh.formats.svg.photograph import Photograph, rgba_of
 from vmesh.formats.svg.size import Length, size_attributes
 from vmesh.formats.svg.style import Mode, Seams, Style
@@ -35,7 +32,6 @@ from vmesh.mesh import Mesh
 from vmesh.progress import Progress, silent
 
 NAMESPACE: Final = "http://www.w3.org/2000/svg"
-_MASK: Final = "_alpha"  # names of gradients have no underscore
 
 
 def write_svg(
@@ -46,6 +42,7 @@ def write_svg(
     tolerance: float = 4.0,
     merge: float = 0.0,
     seams: Seams = "crisp",
+    id_prefix: str | None = None,
     fit: SampleArray | None = None,
     width: Length | None = None,
     height: Length | None = None,
@@ -60,8 +57,9 @@ def write_svg(
         In sRGB: a profile is passed over.
     stream : binary file
     mode : {"gradient", "exact", "auto", "flat"}
-        What fills a triangle: its best linear gradient, three gradients in layers that are
-        screened, the cheapest of these that keeps within `tolerance`, or one colour.
+        What fills a triangle: its best linear gradient, three gradients in layers of which the
+        lighter shows, the cheapest of these that keeps within `tolerance`, or one colour. Programs
+        without blend modes show the last of three layers, which is about the picture.
     tolerance : float
         Largest error of a channel in mode "auto", in levels; above 0.
     merge : float
@@ -70,6 +68,9 @@ def write_svg(
     seams : {"crisp", "trapping"}
         How seams are avoided: by edges that are not smoothed, or by regions that reach under their
         neighbours, for programs that smooth all edges. Not "trapping" in mode "auto".
+    id_prefix : str, optional
+        What ids begin with: a letter or _, then letters, digits, _ and -. Without it a digest of
+        the drawing, so that different drawings may be put into one HTML page.
     fit : ndarray, optional
         The photograph that the mesh was made from, as :func:`vmesh.encode` takes it, in the size of
         the canvas: gradients are fitted to its pixels instead of to the mesh.
@@ -88,7 +89,7 @@ def write_svg(
         If an option is none of these, or has no meaning in the mode.
     """
     limits.check_vertices(mesh.n_vertices)
-    style = Style(mode, tolerance, merge, seams)
+    style = Style(mode, tolerance, merge, seams, id_prefix)
     size = size_attributes(mesh, width, height)
     if mode == "flat" or fit is not None:
         _check_work(mesh, limits)
@@ -110,7 +111,7 @@ def draw_mesh(
     rgba: UInt8Array | None = None,
     progress: Progress = silent,
 ) -> None:
-    """Write the groups that show a mesh into an open document, which has no other mesh.
+    """Write the groups that show a mesh into an open document.
 
     Parameters
     ----------
@@ -125,13 +126,14 @@ def draw_mesh(
         As of :func:`write_svg`.
     """
     colors = mesh.plain_colors
-    drawing = Drawing(mesh, stream, document, style, progress)
+    ids = Ids(prefix_of(mesh, style, rgba))
+    drawing = Drawing(mesh, stream, document, style, ids.gradients, progress)
     if mesh.n_components == 4:
         whole = {"width": str(mesh.width), "height": str(mesh.height)}
         frame = {"maskUnits": "userSpaceOnUse", "x": "0", "y": "0", **whole}
-        with document.element("mask", {"id": _MASK, **frame}):
+        with document.element("mask", {"id": ids.mask, **frame}):
             drawing.write(colors[:, [3, 3, 3]], _channels(rgba, [3, 3, 3]))
-        with document.element("g", {"mask": f"url(#{_MASK})"}):
+        with document.element("g", {"mask": f"url(#{ids.mask})"}):
             drawing.write(colors[:, :3], _channels(rgba, [0, 1, 2], 3))
     else:
         rgb = colors[:, [0, 0, 0]] if colors.shape[1] == 1 else colors

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import gzip
 from collections.abc import Iterator
-from itertools import count, islice, product
-from string import ascii_letters, digits
+from itertools import islice
 from typing import BinaryIO, Final
 
 import numpy as np
@@ -36,7 +35,7 @@ _PATH: Final = '<path fill="{}" d="{}"/>'
 
 
 class Drawing:
-    """Writes groups that show a mesh. Names of gradients are told apart over the whole document.
+    """Writes groups that show a mesh.
 
     Parameters
     ----------
@@ -45,6 +44,8 @@ class Drawing:
         What `document` writes to.
     document : lxml's writer of elements
     style : Style
+    names : iterator of str
+        Ids of gradients.
     report : callable
         Called with the name of each stage as it begins.
     """
@@ -55,6 +56,7 @@ class Drawing:
         stream: BinaryIO | gzip.GzipFile,
         document: etree._IncrementalFileWriter,
         style: Style,
+        names: Iterator[str],
         report: Progress,
     ) -> None:
         self._mesh = mesh
@@ -62,7 +64,7 @@ class Drawing:
         self._document = document
         self._style = style
         self._report = report
-        self._names = _names()
+        self._names = names
 
     def write(self, rgb: UInt8Array, photograph: Photograph | None = None) -> None:
         """Write a group that shows colours of shape (n, 3), or those of a photograph."""
@@ -82,10 +84,10 @@ class Drawing:
         with self._document.element("g", group):
             if mesh.covers_canvas:
                 self._write_backdrop(moments)
-            first, *screened = layers_of(mesh, moments, self._style)
+            first, *lighter = layers_of(mesh, moments, self._style)
             self._write_layer(first)
-            for layer in screened:
-                with self._document.element("g", {"style": "mix-blend-mode:screen"}):
+            for layer in lighter:
+                with self._document.element("g", {"style": "mix-blend-mode:lighten"}):
                     self._write_layer(layer)
 
     def _write_backdrop(self, moments: Moments) -> None:
@@ -114,13 +116,6 @@ class Drawing:
         self._document.flush()
         while chunk := "".join(islice(elements, _CHUNK)):
             self._stream.write(chunk.encode("ascii") + b"\n")
-
-
-def _names() -> Iterator[str]:
-    """Names that XML allows, shorter ones first."""
-    for length in count():
-        for letters in product(ascii_letters, *[ascii_letters + digits] * length):
-            yield "".join(letters)
 
 
 def _shown_means(mesh: Mesh, rgb: UInt8Array, means: Float64Array) -> Float64Array:

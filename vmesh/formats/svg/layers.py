@@ -1,14 +1,12 @@
 """Layers of a drawing: regions that are painted over one another, and their paint.
 
 A layer paints regions, each with one gradient or flat colour. Where one gradient will not do, the
-first layer shows the red of a triangle and two more, which are *screened* onto it, its green and
-its blue: a single channel is exact, and the screen of colours that have no channel in common is
-their sum.
+first layer shows a part of a triangle's colours, and two more layers its other parts (`parts.py`).
 
 References
 ----------
-W3C, "Compositing and Blending Level 1": the blend mode screen. G. M. Morton, "A computer oriented
-geodetic data base and a new technique in file sequencing", IBM, 1966: the Z-curve.
+G. M. Morton, "A computer oriented geodetic data base and a new technique in file sequencing", IBM,
+1966: the Z-curve.
 """
 
 from __future__ import annotations
@@ -20,6 +18,7 @@ import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array
 from vmesh.formats.svg.outlines import Outlines, outlines_of
+from vmesh.formats.svg.parts import paints_in_parts
 from vmesh.formats.svg.regions import Moments, Slopes, merge
 from vmesh.formats.svg.style import Style
 from vmesh.mesh import Mesh
@@ -55,7 +54,7 @@ class Layer:
 
 
 def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
-    """Layers of a mesh in the order of painting; the second and third are screened.
+    """Layers of a mesh in the order of painting; of the second and third what is lighter shows.
 
     `moments` are those of the colours of its triangles.
     """
@@ -81,15 +80,17 @@ def layers_of(mesh: Mesh, moments: Moments, style: Style) -> list[Layer]:
     regions, moments, split = np.argsort(order)[regions], moments.take(order), split[order]
     trapped = style.seams == "trapping"
     outlines = outlines_of(mesh, regions, trapped=trapped)
-    layers = [Layer(outlines, Slopes.fitted(moments.of_channel(0, split)), smallest, rounding)]
-    if split.any():
-        if not split.all():
-            numbers = np.where(split, np.cumsum(split) - 1, -1)
-            outlines = outlines_of(mesh, numbers[regions], trapped=trapped)
-        parts = moments.take(np.flatnonzero(split))
-        for channel in (1, 2):
-            fits = Slopes.fitted(parts.of_channel(channel, np.ones(len(parts.weights), dtype=bool)))
-            layers.append(Layer(outlines, fits, smallest, rounding))
+    if not split.any():
+        return [Layer(outlines, Slopes.fitted(moments), smallest, rounding)]
+    n_whole = np.count_nonzero(~split)
+    # What is split are triangles, never merged, which are painted in this order.
+    corners = mesh.points[mesh.triangles[order[n_whole:]]]
+    parts = paints_in_parts(moments.take(np.arange(n_whole, len(split))), corners)
+    whole = Slopes.fitted(moments.take(np.arange(n_whole)))
+    layers = [Layer(outlines, whole.followed_by(parts[0]), smallest, rounding)]
+    if n_whole:
+        outlines = outlines_of(mesh, np.maximum(regions - n_whole, -1), trapped=trapped)
+    layers += [Layer(outlines, part, smallest, rounding) for part in parts[1:]]
     return layers
 
 

@@ -22,12 +22,13 @@ Association 58(301), 1963: regions that are merged where the squared error grows
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Float64Array, Int64Array
+from vmesh.arrays import Float64Array, Int64Array
 from vmesh.kernels.half_edges import find_twins
 from vmesh.mesh import Mesh
 
@@ -80,10 +81,11 @@ class Moments:
         between = apart[:, :, None] * apart[:, None] * (self.weights * share)[:, None, None]
         return Moments(weights, means, self.scatters + other.scatters + between)
 
-    def of_channel(self, channel: int, chosen: BoolArray) -> Moments:
-        """Moments with black in place of the other channels, in the regions that are chosen."""
+    def of_channels(self, channels: Int64Array) -> Moments:
+        """Moments with one channel of each region, and black in place of its others; -1 for all."""
         keep = np.ones((len(self.weights), 5))
-        keep[chosen, 2:] = np.eye(3)[channel]
+        chosen = channels >= 0
+        keep[chosen, 2:] = np.eye(3)[channels[chosen]]
         scatters = self.scatters * keep[:, :, None]
         scatters *= keep[:, None]
         return Moments(self.weights, self.means * keep, scatters)
@@ -135,6 +137,21 @@ class Slopes:
             *(array[regions] for array in (self.centers, self.middles, self.axes, self.slopes))
         )
 
+    def followed_by(self, other: Slopes) -> Slopes:
+        """Gradients of these regions and then of others."""
+        names = ("centers", "middles", "axes", "slopes")
+        return Slopes(
+            *(np.concatenate([getattr(self, name), getattr(other, name)]) for name in names)
+        )
+
+    @classmethod
+    def chosen(cls, candidates: Sequence[Slopes], choices: Int64Array) -> Slopes:
+        """Gradients of regions, each from the candidate whose number is its choice."""
+        regions = np.arange(len(choices))
+        names = ("centers", "middles", "axes", "slopes")
+        stacks = (np.stack([getattr(each, name) for each in candidates]) for name in names)
+        return cls(*(stack[choices, regions] for stack in stacks))
+
     @classmethod
     def fitted(cls, moments: Moments) -> Slopes:
         """The best gradient of each region."""
@@ -144,9 +161,12 @@ class Slopes:
         _, vectors = np.linalg.eigh(np.swapaxes(maps, 1, 2) @ crossed)
         axes = vectors[:, :, -1]
         slopes = np.einsum("nij,nj->ni", maps, axes)
-        # Of the two ways to write the same gradient, the one that rises to the right.
-        turned = np.where(slopes[:, :1] < 0, -1.0, 1.0)
-        return cls(moments.means[:, :2], moments.means[:, 2:], axes * turned, slopes * turned)
+        return cls(moments.means[:, :2], moments.means[:, 2:], axes, slopes).turned()
+
+    def turned(self) -> Slopes:
+        """Gradients of the same colours, written so that they rise to the right."""
+        signs = np.where(self.slopes[:, :1] < 0, -1.0, 1.0)
+        return Slopes(self.centers, self.middles, self.axes * signs, self.slopes * signs)
 
 
 def merge(mesh: Mesh, moments: Moments, largest: float) -> tuple[Int64Array, Moments]:

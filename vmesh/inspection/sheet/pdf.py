@@ -18,6 +18,7 @@ from typing import Any, BinaryIO, Final
 import pydyf
 
 from vmesh.arrays import UInt8Array
+from vmesh.formats.pdf.file import PdfFile
 from vmesh.formats.pdf.mesh_content import MeshPainter, add, page_of
 from vmesh.formats.pdf.page_size import Page
 from vmesh.formats.raster.rendering import png_of
@@ -35,20 +36,20 @@ _ENCODING: Final = "cp1252"
 
 def write_sheet_pdf(sheet: Sheet, stream: BinaryIO) -> None:
     """Write a sheet as a PDF page."""
-    pdf: Any = pydyf.PDF()
+    pdf = PdfFile(stream)
     page = _SheetPage(pdf, sheet)
     for item in sheet.items:
         page.draw(item)
     page.close()
     if sheet.title:
         pdf.info["Title"] = pydyf.String(sheet.title)
-    pdf.write(stream, version=b"1.7", identifier=True, compress=True)
+    pdf.close()
 
 
 class _SheetPage:
     """The page of a sheet: its content, and the objects that the content draws."""
 
-    def __init__(self, pdf: Any, sheet: Sheet) -> None:
+    def __init__(self, pdf: PdfFile, sheet: Sheet) -> None:
         self._pdf = pdf
         self._size = Page(sheet.width, sheet.height)
         self._objects: Any = pydyf.Dictionary()
