@@ -7,11 +7,12 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from vmesh.arrays import Int32Array, SampleArray
+from vmesh.arrays import Int32Array
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.sampling import Samples
 from vmesh.kernels.delaunay import delaunay
+from vmesh.kernels.remeshing import WeightedImage
 
 SUBDIVISION: Final = 1  # pixel centres lie on the lattice of half pixels
 UNIT: Final = 1 << SUBDIVISION  # lattice units in a pixel
@@ -40,13 +41,12 @@ class SampledDraft:
 
     Parameters
     ----------
-    image : ndarray
-        Shape (h, w, c), uint8 or uint16.
+    image : WeightedImage
     propose : callable
         Samples of about a number of vertices.
     """
 
-    def __init__(self, image: SampleArray, propose: Callable[[int], Samples], n: int) -> None:
+    def __init__(self, image: WeightedImage, propose: Callable[[int], Samples], n: int) -> None:
         self._image = image
         self._propose = propose
         self.resize(n)
@@ -60,9 +60,11 @@ class SampledDraft:
         # At the solution of A'A c = A'y the squared error is y'y - c'A'y.
         # Not by a dot product, whose order of summing is that of a BLAS and its threads.
         fitted = sum(float((e.moments * colors[:, z]).sum()) for z, e in enumerate(equations))
-        squares = np.square(self._image, dtype=np.float64)
-        if self._image.shape[2] == 4:
-            squares[:, :, :3] *= self._image[:, :, 3:] / peak_of(self._image)
+        samples, weights = self._image
+        squares = np.square(samples, dtype=np.float64)
+        if samples.shape[2] == 4:
+            squares[:, :, :3] *= samples[:, :, 3:] / peak_of(samples)
+        squares *= weights[:, :, None]
         self.error = max(0.0, float(squares.sum()) - fitted)
 
     def geometry(self) -> tuple[Int32Array, Int32Array]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from vmesh.arrays import SampleArray
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors
 from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
@@ -13,6 +12,7 @@ from vmesh.encoder.quantization import quantize
 from vmesh.encoder.rate_model import lambda_of, luma_step
 from vmesh.encoder.tiles.code_order import code_order
 from vmesh.grid import Grid
+from vmesh.kernels.remeshing import WeightedImage
 from vmesh.mesh import Mesh, Metadata
 
 
@@ -22,8 +22,7 @@ class MeshBuilder:
 
     Parameters
     ----------
-    image : ndarray
-        Shape (h, w, c), uint8 or uint16.
+    image : WeightedImage
     metadata : Metadata
     color_step : int or None
         Step of the luma lattice; None lets the error decide.
@@ -31,20 +30,21 @@ class MeshBuilder:
         The tiles that files of the meshes are made of.
     """
 
-    image: SampleArray
+    image: WeightedImage
     metadata: Metadata
     color_step: int | None
     grid: Grid | None = None
 
     def build(self, draft: Draft) -> Mesh:
         """Mesh of a draft: colours fitted and rounded to levels that are worth their bits."""
-        height, width, n_components = self.image.shape
+        samples = self.image.samples
+        height, width, n_components = samples.shape
         vertices, triangles = draft.geometry()
         colors, equations = fit_colors(self.image, vertices, triangles, UNIT)
         step = self.color_step
         if step is None:
-            step = luma_step(draft.error, self.image.size, peak_of(self.image))
-        lattice = ColorLattice.uniform(n_components, step, depth_of(self.image))
+            step = luma_step(draft.error, samples.size, peak_of(samples))
+        lattice = ColorLattice.uniform(n_components, step, depth_of(samples))
         # A caller that asks for no rounding wants the fitted colours as they are.
         lambda_ = 0.0 if self.color_step == 1 else lambda_of(draft)
         hierarchy = code_order(vertices, self.grid, UNIT)

@@ -90,7 +90,7 @@ def meet_psnr(
     earlier: tuple[float, float] | None = None
     for attempt in range(_MAX_ATTEMPTS):
         mesh = builder.build(draft)
-        psnr = measure_psnr(builder.image, mesh)
+        psnr = measure_psnr(builder.image.samples, mesh)
         if psnr >= target_psnr and (best is None or psnr < best_psnr):
             best, best_psnr = mesh, psnr
         if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from vmesh.arrays import SampleArray
 from vmesh.encoder.draft import SampledDraft
 from vmesh.encoder.effort import EFFORTS
-from vmesh.encoder.image import peak_of
+from vmesh.encoder.image import crop, peak_of
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_model import (
     SAMPLED_POWER,
@@ -22,16 +21,17 @@ from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.sampling import Samples
 from vmesh.encoder.settings import DEFAULT_QUALITY, Settings
 from vmesh.encoder.threads import Run, run_here
-from vmesh.encoder.tiles.tiled_draft import TiledRemesher, TiledSamples, crop
+from vmesh.encoder.tiles.tiled_draft import TiledRemesher, TiledSamples
 from vmesh.grid import Grid, Tile
+from vmesh.kernels.remeshing import WeightedImage
 
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3
 
 
-def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
+def sampled_draft(image: WeightedImage, settings: Settings) -> SampledDraft:
     """Draft of vertices where they are sampled, as many as the settings ask for."""
-    height, width = image.shape[:2]
+    height, width = image.weights.shape
 
     def take(n_vertices: int) -> Samples:
         _, samples = propose(image, settings.with_goal(vertices=n_vertices))
@@ -40,14 +40,14 @@ def sampled_draft(image: SampleArray, settings: Settings) -> SampledDraft:
     wanted = _wanted_vertices(settings, width, height)
     draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
     if wanted is None and settings.target_psnr is None:
-        lambda_ = lambda_of_quality(_quality(settings), peak_of(image))
+        lambda_ = lambda_of_quality(_quality(settings), peak_of(image.samples))
         for _ in range(2):
             factor = (lambda_of(draft) / lambda_) ** (1 / SAMPLED_POWER)
             draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
     return draft
 
 
-def sampled_tiles(image: SampleArray, grid: Grid, settings: Settings, run: Run) -> TiledSamples:
+def sampled_tiles(image: WeightedImage, grid: Grid, settings: Settings, run: Run) -> TiledSamples:
     """Draft of a picture in tiles, its vertices where they are sampled in each."""
     wanted = _wanted_vertices(settings, grid.width, grid.height)
     if wanted is not None:
@@ -63,10 +63,10 @@ def sampled_tiles(image: SampleArray, grid: Grid, settings: Settings, run: Run) 
 
 
 def thinned(
-    image: SampleArray, settings: Settings, report: Callable[[], None], run: Run
+    image: WeightedImage, settings: Settings, report: Callable[[], None], run: Run
 ) -> Remesher:
     """Draft of the vertices that matter most in a dense sample of a picture."""
-    height, width = image.shape[:2]
+    height, width = image.weights.shape
     wanted = _wanted_vertices(settings, width, height)
     start = _start(width, height, settings)
     if wanted is not None:
@@ -81,7 +81,7 @@ def thinned(
 
 
 def thinned_tiles(
-    image: SampleArray, grid: Grid, settings: Settings, report: Callable[[], None], run: Run
+    image: WeightedImage, grid: Grid, settings: Settings, report: Callable[[], None], run: Run
 ) -> TiledRemesher:
     """Draft of the vertices that matter most in dense samples of tiles, all thinned alike."""
 
@@ -110,7 +110,7 @@ def _start(width: int, height: int, settings: Settings) -> int:
     return max(4, round(EFFORTS[settings.effort].density * width * height))
 
 
-def _proposed(image: SampleArray, settings: Settings, n_vertices: int, run: Run) -> Remesher:
+def _proposed(image: WeightedImage, settings: Settings, n_vertices: int, run: Run) -> Remesher:
     """Draft of a dense sample of a picture."""
     _, samples = propose(image, settings.with_goal(vertices=n_vertices))
     return Remesher(image, samples.vertices(), EFFORTS[settings.effort], run)

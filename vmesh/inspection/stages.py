@@ -7,7 +7,7 @@ from functools import cached_property
 
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.codec.writer import dumps
-from vmesh.encoder.image import as_image
+from vmesh.encoder.image import weighted
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
@@ -88,7 +88,7 @@ def inspect_encoding(
     limits : Limits
         Limits on the mesh and on what is drawn of it.
     """
-    salience, samples = propose(as_image(photograph), settings)
+    salience, samples = propose(weighted(photograph), settings)
     mesh = encode_with(photograph, settings, metadata=metadata, progress=progress)
     limits.check_vertices(mesh.n_vertices)
     classes = samples.classes if settings.method == "blue-noise" else None

@@ -10,13 +10,13 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
-from vmesh.arrays import Int32Array, SampleArray
+from vmesh.arrays import Int32Array
 from vmesh.encoder.draft import Draft, SampledDraft
 from vmesh.encoder.rate_model import ERROR_POWER, SAMPLED_POWER, lambda_of
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.threads import Run
 from vmesh.encoder.tiles.joining import join
-from vmesh.grid import Grid, Tile
+from vmesh.grid import Grid
 
 Part = TypeVar("Part", bound=Draft)
 
@@ -202,12 +202,6 @@ class TiledRemesher(TiledDraft[Remesher]):
             part.thin(_CORNERS, _say_nothing, max_cost=max_cost)
 
         self._do(thin, self._parts, report)
-
-
-def crop(image: SampleArray, tile: Tile) -> SampleArray:
-    """The part of a picture, shape (h, w, c), that lies in a tile."""
-    x, y, width, height = tile
-    return np.ascontiguousarray(image[y : y + height, x : x + width])
 
 
 def apportion(weights: Sequence[float], total: int) -> list[int]:
