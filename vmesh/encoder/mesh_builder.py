@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
+import numpy as np
+
+from vmesh.arrays import Float64Array, Int32Array
+from vmesh.codec.hierarchy import Hierarchy
 from vmesh.color_lattice import ColorLattice
-from vmesh.encoder.colors import fit_colors
+from vmesh.encoder.colors import NormalEquations, fit_colors
 from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
 from vmesh.encoder.image import depth_of, peak_of
 from vmesh.encoder.quantization import quantize
-from vmesh.encoder.rate_model import lambda_of, luma_step
+from vmesh.encoder.rate_model import lambda_for, luma_step
 from vmesh.encoder.tiles.code_order import code_order
 from vmesh.grid import Grid
 from vmesh.kernels.remeshing import WeightedImage
 from vmesh.mesh import Mesh, Metadata
+
+
+class Fit(NamedTuple):
+    """A draft with fitted colours that are not rounded yet."""
+
+    vertices: Int32Array
+    triangles: Int32Array
+    colors: Float64Array
+    equations: list[NormalEquations]
+    hierarchy: Hierarchy
+    error: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,23 +53,44 @@ class MeshBuilder:
 
     def build(self, draft: Draft) -> Mesh:
         """Mesh of a draft: colours fitted and rounded to levels that are worth their bits."""
-        samples = self.image.samples
-        height, width, n_components = samples.shape
+        fit = self.fit(draft)
+        return self.rounded(fit, fit.error)
+
+    def fit(self, draft: Draft) -> Fit:
+        """A draft's geometry and fitted colours, and the order of a file."""
         vertices, triangles = draft.geometry()
         colors, equations = fit_colors(self.image, vertices, triangles, UNIT)
+        hierarchy = code_order(vertices, self.grid, UNIT)
+        return Fit(vertices, triangles, colors, equations, hierarchy, draft.error)
+
+    def rounded(self, fit: Fit, error: float) -> Mesh:
+        """Mesh in colours as coarse as suits a squared error, which need not be the draft's."""
+        samples = self.image.samples
         step = self.color_step
         if step is None:
-            step = luma_step(draft.error, samples.size, peak_of(samples))
-        lattice = ColorLattice.uniform(n_components, step, depth_of(samples))
+            step = luma_step(error, samples.size, peak_of(samples))
+        lattice = self._lattice(step)
         # A caller that asks for no rounding wants the fitted colours as they are.
-        lambda_ = 0.0 if self.color_step == 1 else lambda_of(draft)
-        hierarchy = code_order(vertices, self.grid, UNIT)
-        levels = quantize(equations, colors, hierarchy, lattice, lambda_)
+        lambda_ = 0.0 if self.color_step == 1 else lambda_for(error, len(fit.vertices))
+        levels = quantize(fit.equations, fit.colors, fit.hierarchy, lattice, lambda_)
+        return self._mesh(fit, lattice, levels)
+
+    def finest(self, fit: Fit) -> Mesh:
+        """Mesh whose colours are the nearest to the fitted ones, in the finest steps."""
+        lattice = self._lattice(self.color_step or 1)
+        return self._mesh(fit, lattice, lattice.levels_from_colors(np.rint(fit.colors)))
+
+    def _lattice(self, step: int) -> ColorLattice:
+        samples = self.image.samples
+        return ColorLattice.uniform(samples.shape[2], step, depth_of(samples))
+
+    def _mesh(self, fit: Fit, lattice: ColorLattice, levels: Int32Array) -> Mesh:
+        height, width = self.image.weights.shape
         return Mesh(
             width,
             height,
-            vertices,
-            triangles,
+            fit.vertices,
+            fit.triangles,
             levels,
             lattice,
             SUBDIVISION,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from itertools import chain, repeat
 from typing import Final
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
+from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft, fewest_vertices, most_vertices
 from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.image import depth_of, peak_of, weighted
 from vmesh.encoder.mesh_builder import MeshBuilder
@@ -25,7 +25,14 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
-from vmesh.encoder.starting_mesh import sampled_draft, sampled_tiles, thinned, thinned_tiles
+from vmesh.encoder.small_pictures import best_of_rungs, takes_rungs
+from vmesh.encoder.starting_mesh import (
+    dense_draft,
+    sampled_draft,
+    sampled_tiles,
+    thinned,
+    thinned_tiles,
+)
 from vmesh.encoder.threads import Run, workers
 from vmesh.encoder.tiles.tiled_draft import REPORTS, TiledRemesher
 from vmesh.grid import Grid
@@ -167,12 +174,38 @@ def encode_with(
     grid = _grid(image, chosen)
     builder = MeshBuilder(image, metadata or Metadata(), chosen.color_step, grid)
     with workers(chosen.threads) as run:
-        if chosen.effort == 1:
-            draft = _sample(image, grid, chosen, run)
-        else:
-            draft = _remesh(image, chosen, builder, report, run)
+        if takes_rungs(image, chosen):
+            reports = chain([report], repeat(silent))  # once is enough
+            mesh = best_of_rungs(
+                builder, chosen, lambda rung: _draft(rung, builder, next(reports), run), run
+            )
+            report("colors")
+            return mesh
+        draft = _draft(chosen, builder, report, run)
         report("colors")
-        return _meet_goal(draft, builder, chosen, lambda: report("rate control"))
+        return _meet_goal(draft, builder, chosen, report, run)
+
+
+def _draft(settings: Settings, builder: MeshBuilder, report: Progress, run: Run) -> Draft:
+    """Draft with as many vertices as the settings ask for, or about as many as their goal takes."""
+    height, width = builder.image.weights.shape
+    draft: Draft
+    if settings.effort == 1:
+        draft = _sample(builder.image, builder.grid, settings, run)
+    else:
+        draft = _remesh(builder.image, settings, builder, report, run)
+    wanted = settings.n_vertices(width, height)
+    if wanted is None:
+        return draft
+    fewest, most = fewest_vertices(builder.grid), most_vertices(width, height, builder.grid)
+    wanted = min(max(wanted, fewest), most)
+    if draft.n_vertices != wanted:
+        draft.resize(wanted)
+    if draft.n_vertices != wanted:
+        dense = dense_draft(builder.image, builder.grid, settings, run)
+        dense.thin_exactly(wanted)
+        draft = dense
+    return draft
 
 
 def count_steps(settings: Settings) -> int:
@@ -232,18 +265,24 @@ def _remesh(
     n_vertices = wanted or draft.n_vertices
     if settings.target_size is not None:
         n_vertices = refined_vertices(builder.build(draft), settings.target_size)
-    draft.refine(min(n_vertices, width * height), lambda: report("refinement"))
-    if wanted is not None and draft.n_vertices != min(wanted, width * height):
-        draft.resize(min(wanted, width * height))
+    most = most_vertices(width, height, builder.grid)
+    draft.refine(min(n_vertices, most), lambda: report("refinement"))
     return draft
 
 
 def _meet_goal(
-    draft: Draft, builder: MeshBuilder, settings: Settings, report: Callable[[], None]
+    draft: Draft, builder: MeshBuilder, settings: Settings, report: Progress, run: Run
 ) -> Mesh:
     """Mesh of a draft, resized where the settings ask for a size or a PSNR."""
+
+    def dense() -> Remesher | TiledRemesher:
+        return dense_draft(builder.image, builder.grid, settings, run)
+
+    def step() -> None:
+        report("rate control")
+
     if settings.target_size is not None:
-        return meet_size(draft, builder, settings.target_size, report)
+        return meet_size(draft, dense, builder, settings.target_size, step)
     if settings.target_psnr is not None:
-        return meet_psnr(draft, builder, settings.target_psnr, report)
+        return meet_psnr(draft, dense, builder, settings.target_psnr, step)
     return builder.build(draft)

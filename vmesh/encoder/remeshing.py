@@ -45,6 +45,7 @@ _CHANCE: Final = 8.0
 _SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
 _HASTE: Final = 0.6  # factor of the share where the error has risen
 _PATIENCE: Final = 3  # rounds that are judged together
+_CROWDED: Final = 0.5  # vertices for each pixel
 _INSERTION_PASSES: Final = 6
 
 
@@ -121,6 +122,10 @@ class Remesher:
                 break
         self._compact(0)
 
+    def thin_exactly(self, n_vertices: int) -> None:
+        """Remove vertices until there are so many."""
+        self.thin(n_vertices, lambda: None)
+
     def refine(self, n_vertices: int, report: Callable[[], None]) -> None:
         """Move and flip, then exchange vertices round by round while that gains enough.
 
@@ -147,6 +152,12 @@ class Remesher:
 
     def _exchange_rounds(self, n_vertices: int, share: float, report: Callable[[], None]) -> None:
         """Exchange vertices round by round, first this share of them, while that gains enough."""
+        if n_vertices > _CROWDED * self._picture.weights.size:
+            # There is hardly a pixel left for what comes into the place of what goes.
+            if n_vertices != self.n_vertices:
+                self._exchange(n_vertices, 0.0)
+                self._settle()
+            return
         errors = []
         for _ in range(self._effort.max_rounds):
             self._exchange(n_vertices, share)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import sqrt
 from typing import Final
 
-from vmesh.encoder.draft import SampledDraft
+from vmesh.encoder.draft import SampledDraft, dense_vertices, most_vertices
 from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.image import crop, peak_of
 from vmesh.encoder.proposals import propose
@@ -27,11 +28,16 @@ from vmesh.kernels.remeshing import WeightedImage
 
 # Thinning starts from at least so many times the vertices wanted.
 _LEAST_CHOICE: Final = 3
+# How often a picture is sampled in search of a lambda, and what factor from it is close enough.
+_MIN_SAMPLINGS: Final = 2
+_MAX_SAMPLINGS: Final = 12
+_CLOSE: Final = 2.0
 
 
 def sampled_draft(image: WeightedImage, settings: Settings) -> SampledDraft:
     """Draft of vertices where they are sampled, as many as the settings ask for."""
     height, width = image.weights.shape
+    most = most_vertices(width, height)
 
     def take(n_vertices: int) -> Samples:
         _, samples = propose(image, settings.with_goal(vertices=n_vertices))
@@ -40,11 +46,28 @@ def sampled_draft(image: WeightedImage, settings: Settings) -> SampledDraft:
     wanted = _wanted_vertices(settings, width, height)
     draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
     if wanted is None and settings.target_psnr is None:
-        lambda_ = lambda_of_quality(_quality(settings), peak_of(image.samples))
-        for _ in range(2):
-            factor = (lambda_of(draft) / lambda_) ** (1 / SAMPLED_POWER)
-            draft.resize(max(4, min(round(draft.n_vertices * factor), width * height)))
+        _approach(draft, lambda_of_quality(quality_of(settings), peak_of(image.samples)), most)
     return draft
+
+
+def _approach(draft: SampledDraft, lambda_: float, most: int) -> None:
+    """Sample as many vertices as make a bit worth about lambda, `most` at most."""
+    low, high = 4, most
+    for attempt in range(_MAX_SAMPLINGS):
+        before, now = draft.n_vertices, lambda_of(draft)
+        if attempt >= _MIN_SAMPLINGS and 1 / _CLOSE <= now / lambda_ <= _CLOSE:
+            break
+        if now > lambda_:
+            low = max(low, before)
+        else:
+            high = min(high, before)
+        wanted = round(before * (now / lambda_) ** (1 / SAMPLED_POWER))
+        if attempt >= _MIN_SAMPLINGS and not low < wanted < high:
+            # The power says little of a small picture, whose pixels soon all are vertices.
+            wanted = round(sqrt(low * high))
+        draft.resize(max(4, min(wanted, most)))
+        if attempt >= _MIN_SAMPLINGS and high - low <= 1:
+            break
 
 
 def sampled_tiles(image: WeightedImage, grid: Grid, settings: Settings, run: Run) -> TiledSamples:
@@ -105,13 +128,33 @@ def thinned_tiles(
         draft.replace(dict(zip(denser, parts, strict=True)))
 
 
+def dense_draft(
+    image: WeightedImage, grid: Grid | None, settings: Settings, run: Run
+) -> Remesher | TiledRemesher:
+    """Draft with a vertex at each pixel, which holds the picture without any error."""
+    # A draft that is only thinned has no use for the effort, and 1 has none.
+    effort = EFFORTS[max(2, settings.effort)]
+
+    def dense(part: WeightedImage, run: Run) -> Remesher:
+        height, width = part.weights.shape
+        return Remesher(part, dense_vertices(width, height), effort, run)
+
+    if grid is None:
+        return dense(image, run)
+    parts = run(lambda tile: dense(crop(image, tile), run_here), grid.tiles())
+    return TiledRemesher(grid, list(parts), run, near=0)
+
+
 def _start(width: int, height: int, settings: Settings) -> int:
     """Number of vertices that thinning starts from."""
     return max(4, round(EFFORTS[settings.effort].density * width * height))
 
 
 def _proposed(image: WeightedImage, settings: Settings, n_vertices: int, run: Run) -> Remesher:
-    """Draft of a dense sample of a picture."""
+    """Draft of a dense sample of a picture, or of all its pixels."""
+    height, width = image.weights.shape
+    if n_vertices >= width * height:
+        return Remesher(image, dense_vertices(width, height), EFFORTS[settings.effort], run)
     _, samples = propose(image, settings.with_goal(vertices=n_vertices))
     return Remesher(image, samples.vertices(), EFFORTS[settings.effort], run)
 
@@ -134,7 +177,7 @@ def _thin(
         allowed = draft.n_samples * draft.peak**2 / 10.0 ** (settings.target_psnr / 10.0)
         draft.thin(4, report, max_error=error_before_refinement(allowed))
     else:
-        lambda_ = lambda_of_quality(_quality(settings), draft.peak)
+        lambda_ = lambda_of_quality(quality_of(settings), draft.peak)
         draft.thin(4, report, max_cost=staying_cost(lambda_))
 
 
@@ -145,5 +188,6 @@ def _wanted_vertices(settings: Settings, width: int, height: int) -> int | None:
     return settings.n_vertices(width, height)
 
 
-def _quality(settings: Settings) -> int:
+def quality_of(settings: Settings) -> int:
+    """Quality that the settings ask for."""
     return DEFAULT_QUALITY if settings.quality is None else settings.quality
