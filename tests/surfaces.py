@@ -8,7 +8,7 @@ from tests.twins import directed_edges, in_circle_determinant
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels.delaunay import delaunay
-from vmesh.kernels.remeshing import Surface, make_workspace, measure
+from vmesh.kernels.remeshing import Surface, WeightedImage, make_workspace, measure
 from vmesh.mesh import Mesh
 
 
@@ -40,6 +40,11 @@ def scattered(width: int, height: int, n: int, seed: int) -> Int32Array:
     return np.array(sorted(points, key=lambda p: (p[1], p[0])), dtype=np.int32)
 
 
+def evenly(image: UInt8Array) -> WeightedImage:
+    """A picture of which every pixel counts alike."""
+    return WeightedImage(image, np.ones(image.shape[:2]))
+
+
 def open_surface(
     image: UInt8Array, vertices: Int32Array, colors: Float64Array, n_spare: int = 0
 ) -> Surface:
@@ -65,7 +70,8 @@ def open_surface(
 
 def measure_all(surface: Surface, image: UInt8Array) -> float:
     """Compute the errors of all triangles anew; their sum."""
-    measure(surface, image, make_workspace(image.shape[0], image.shape[2]), 0, len(surface.errors))
+    work = make_workspace(image.shape[0], image.shape[2])
+    measure(surface, evenly(image), work, 0, len(surface.errors))
     return float(surface.errors.sum())
 
 

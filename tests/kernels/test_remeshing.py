@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.pictures import PICTURES, noise, ramp, step_edge
 from tests.strategies import meshes, pictures
-from tests.surfaces import check_surface, measure_all, open_surface, scattered, triangles_of
+from tests.surfaces import check_surface, evenly, measure_all, open_surface, scattered, triangles_of
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.remeshing import (
@@ -43,8 +43,8 @@ def remove(surface: Surface, image: UInt8Array, n_remove: int, max_cost: float) 
     work = room_for(image)
     n_points = len(surface.points)
     costs = np.zeros(n_points)
-    weigh(surface, image, work, 0, n_points, costs)
-    return thin(surface, image, work, costs, np.ones(n_points), n_remove, max_cost)
+    weigh(surface, evenly(image), work, 0, n_points, costs)
+    return thin(surface, evenly(image), work, costs, np.ones(n_points), n_remove, max_cost)
 
 
 def random_colors(n: int, n_components: int, seed: int = 0) -> Float64Array:
@@ -210,7 +210,7 @@ def test_only_the_corners_are_left_in_the_end(name: str) -> None:
 def proposals(surface: Surface, image: UInt8Array) -> tuple[Float64Array, np.ndarray]:
     n_triangles = len(surface.errors)
     gains, places = np.full(n_triangles, np.nan), np.zeros((n_triangles, 2), dtype=np.int64)
-    propose_insertions(surface, image, room_for(image), 0, len(gains), gains, places)
+    propose_insertions(surface, evenly(image), room_for(image), 0, len(gains), gains, places)
     return gains, places
 
 
@@ -222,7 +222,7 @@ def test_an_insertion_gains_what_was_proposed(n_components: int, seed: int) -> N
     gains, places = proposals(surface, image)
     best = int(np.argmax(gains))
     before, gain = surface.errors.sum(), gains[best]
-    assert insert(surface, image, room_for(image), np.array([best]), gains, places, 1) == 1
+    assert insert(surface, evenly(image), room_for(image), np.array([best]), gains, places, 1) == 1
     check_surface(surface, 40, 30)
     check_errors(surface, image)
     v = len(surface.points) - 1
@@ -265,7 +265,7 @@ def test_no_two_insertions_share_a_side() -> None:
     gains, places = proposals(surface, image)
     order = np.argsort(-gains, kind="stable")
     order = order[gains[order] > 0]
-    inserted = insert(surface, image, room_for(image), order, gains, places, 50)
+    inserted = insert(surface, evenly(image), room_for(image), order, gains, places, 50)
     check_surface(surface, 40, 30)
     check_errors(surface, image)
     split = {
@@ -277,10 +277,10 @@ def test_no_two_insertions_share_a_side() -> None:
         if e // 3 in split and (v, u) in edges:
             assert edges[v, u] // 3 not in split
     # What changed is proposed anew, and a second call may split the neighbours.
-    propose_insertions(surface, image, room_for(image), 0, len(gains), gains, places)
+    propose_insertions(surface, evenly(image), room_for(image), 0, len(gains), gains, places)
     np.testing.assert_array_equal(gains, proposals(surface, image)[0])
     useful = np.argsort(-gains, kind="stable")[:3]
-    assert insert(surface, image, room_for(image), useful, gains, places, 50) > 0
+    assert insert(surface, evenly(image), room_for(image), useful, gains, places, 50) > 0
     check_surface(surface, 40, 30)
 
 
@@ -291,9 +291,9 @@ def test_insertions_end_where_the_room_does(n_spare: int) -> None:
     gains, places = proposals(surface, image)
     order = np.argsort(-gains, kind="stable")
     order = order[gains[order] > 0]
-    assert insert(surface, image, room_for(image), order, gains, places, 100) == n_spare
+    assert insert(surface, evenly(image), room_for(image), order, gains, places, 100) == n_spare
     check_surface(surface, 40, 30)
-    assert insert(surface, image, room_for(image), order, gains, places, 100) == 0
+    assert insert(surface, evenly(image), room_for(image), order, gains, places, 100) == 0
 
 
 def test_no_more_are_inserted_than_were_asked_for() -> None:
@@ -301,7 +301,7 @@ def test_no_more_are_inserted_than_were_asked_for() -> None:
     surface = surface_on(image, 20, 2, n_spare=10)
     gains, places = proposals(surface, image)
     order = np.argsort(-gains, kind="stable")
-    assert insert(surface, image, room_for(image), order, gains, places, 3) == 3
+    assert insert(surface, evenly(image), room_for(image), order, gains, places, 3) == 3
     assert np.count_nonzero(surface.leaving >= 0) == 31
 
 
@@ -362,7 +362,7 @@ def test_a_vertex_walks_to_better_places_by_the_largest_predicted_decrease(seed:
         surface.dirty[:v] = False
         # Those after it would be woken up by its move.
         surface.leaving[v + 1 :] = -1
-        moved = relocate(surface, image, work, np.arange(len(surface.points)))
+        moved = relocate(surface, evenly(image), work, np.arange(len(surface.points)))
         check_errors(surface, image)
         assert moved == bool(path)
         assert surface.points[v].tolist() == [*map(list, path), before][len(path) - 1]
@@ -380,7 +380,7 @@ def test_moving_never_raises_the_error(n_components: int, seed: int) -> None:
     work = room_for(image)
     before = surface.errors.sum()
     for _ in range(6):
-        moved = relocate(surface, image, work, np.arange(len(surface.points)))
+        moved = relocate(surface, evenly(image), work, np.arange(len(surface.points)))
         after = surface.errors.sum()
         assert after <= before
         before = after
@@ -395,11 +395,11 @@ def test_vertices_come_to_rest_when_nothing_around_them_changes() -> None:
     surface = surface_on(image, 24, 5)
     work = room_for(image)
     for _ in range(100):
-        if not relocate(surface, image, work, np.arange(len(surface.points))):
+        if not relocate(surface, evenly(image), work, np.arange(len(surface.points))):
             break
     assert not surface.dirty[surface.leaving >= 0].all()
     points = surface.points.copy()
-    assert relocate(surface, image, work, np.arange(len(surface.points))) == 0
+    assert relocate(surface, evenly(image), work, np.arange(len(surface.points))) == 0
     assert np.array_equal(surface.points, points)
 
 
@@ -408,7 +408,7 @@ def test_border_vertices_stay_on_their_side_and_corners_where_they_are() -> None
     surface = surface_on(image, 20, 3)
     before = surface.points.copy()
     for _ in range(5):
-        relocate(surface, image, room_for(image), np.arange(len(surface.points)))
+        relocate(surface, evenly(image), room_for(image), np.arange(len(surface.points)))
     far = np.array([80, 60])
     on_border = (before == 0) | (before == far)
     assert np.array_equal(surface.points[on_border], before[on_border])
@@ -448,7 +448,7 @@ def test_flips_lower_the_error_until_none_is_left_that_would(seed: int) -> None:
     assert max(flip_gains(surface, image)) > 0
     before = surface.errors.sum()
     for _ in range(50):
-        flipped = flip_edges(surface, image, work, 0.0)
+        flipped = flip_edges(surface, evenly(image), work, 0.0)
         check_surface(surface, 40, 30)
         check_errors(surface, image)
         if not flipped:
@@ -471,7 +471,7 @@ def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
         n_flipped = 0
         for _ in range(50):
             before = surface.errors.sum()
-            flipped = flip_edges(surface, image, work, cost)
+            flipped = flip_edges(surface, evenly(image), work, cost)
             n_flipped += flipped
             if not flipped:
                 break
@@ -486,10 +486,10 @@ def test_a_high_charge_leads_back_to_the_delaunay_triangles() -> None:
     surface = surface_on(image, 16, 1)
     implied = {frozenset(face) for face in triangles_of(surface).tolist()}
     work = room_for(image)
-    while flip_edges(surface, image, work, 0.0):
+    while flip_edges(surface, evenly(image), work, 0.0):
         pass
     assert {frozenset(face) for face in triangles_of(surface).tolist()} != implied
-    while flip_edges(surface, image, work, 1e12):
+    while flip_edges(surface, evenly(image), work, 1e12):
         check_surface(surface, 40, 30)
     assert {frozenset(face) for face in triangles_of(surface).tolist()} == implied
 
@@ -515,11 +515,11 @@ def test_a_surface_stays_sound_whatever_is_done_to_it(picture: UInt8Array, seed:
         elif edit == 1:
             gains, places = proposals(surface, image)
             order = np.argsort(-gains, kind="stable")
-            insert(surface, image, work, order[gains[order] > 0], gains, places, 4)
+            insert(surface, evenly(image), work, order[gains[order] > 0], gains, places, 4)
         elif edit == 2:
-            relocate(surface, image, work, np.arange(len(surface.points)))
+            relocate(surface, evenly(image), work, np.arange(len(surface.points)))
         else:
-            flip_edges(surface, image, work, float(random.choice([0.0, 1e3])))
+            flip_edges(surface, evenly(image), work, float(random.choice([0.0, 1e3])))
         check_surface(surface, width, height)
     check_errors(surface, image)
 

@@ -17,6 +17,9 @@ from vmesh.limits import MAX_SIDE
 # holds to the picture could become anything.
 _LEAST_WEIGHT: Final = 1 / 1024
 
+SMALL: Final = 1 << 12
+"""Pictures of fewer pixels have many meshes made and compared."""
+
 
 def as_image(array: npt.ArrayLike) -> SampleArray:
     """The picture as a contiguous array of shape (h, w, c), c being 1, 3 or 4."""
@@ -61,6 +64,11 @@ def weighted(array: npt.ArrayLike, weights: npt.ArrayLike | None = None) -> Weig
     if weights is None:
         return WeightedImage(samples, np.ones(samples.shape[:2]))
     return WeightedImage(samples, _normalised(weights, samples.shape[:2]))
+
+
+def is_small(image: WeightedImage) -> bool:
+    """True for a picture so small that many meshes of it can be made and compared."""
+    return image.weights.size < SMALL
 
 
 def crop(image: WeightedImage, tile: Tile) -> WeightedImage:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,13 @@ from vmesh.encoder.colors import NormalEquations, fit_colors
 from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
 from vmesh.encoder.image import depth_of, peak_of
 from vmesh.encoder.quantization import quantize
-from vmesh.encoder.rate_model import lambda_for, luma_step
+from vmesh.encoder.rate_model import exact_luma_step, lambda_of, luma_step
 from vmesh.encoder.tiles.code_order import code_order
 from vmesh.grid import Grid
 from vmesh.kernels.remeshing import WeightedImage
 from vmesh.mesh import Mesh, Metadata
+
+_FINE: Final = 100  # a luma step at which the ratios of all steps can be read off
 
 
 class Fit(NamedTuple):
@@ -54,7 +56,8 @@ class MeshBuilder:
     def build(self, draft: Draft) -> Mesh:
         """Mesh of a draft: colours fitted and rounded to levels that are worth their bits."""
         fit = self.fit(draft)
-        return self.rounded(fit, fit.error)
+        step = luma_step(fit.error, self.image.samples.size, peak_of(self.image.samples))
+        return self._rounded(fit, self._lattice(self.color_step or step), lambda_of(draft))
 
     def fit(self, draft: Draft) -> Fit:
         """A draft's geometry and fitted colours, and the order of a file."""
@@ -63,15 +66,23 @@ class MeshBuilder:
         hierarchy = code_order(vertices, self.grid, UNIT)
         return Fit(vertices, triangles, colors, equations, hierarchy, draft.error)
 
-    def rounded(self, fit: Fit, error: float) -> Mesh:
-        """Mesh in colours as coarse as suits a squared error, which need not be the draft's."""
+    def rounded(self, fit: Fit, error: float, lambda_: float) -> Mesh:
+        """Mesh in colours as coarse as suits a squared error and what a bit is worth.
+
+        Neither need be that of the draft, and the components' steps grow one by one with the error.
+        """
         samples = self.image.samples
-        step = self.color_step
-        if step is None:
-            step = luma_step(error, samples.size, peak_of(samples))
-        lattice = self._lattice(step)
+        if self.color_step is not None:
+            return self._rounded(fit, self._lattice(self.color_step), lambda_)
+        exact = exact_luma_step(error, samples.size)
+        ratios = self._lattice(_FINE).steps
+        steps = (min(max(round(exact * ratio / _FINE), 1), peak_of(samples)) for ratio in ratios)
+        return self._rounded(fit, ColorLattice(tuple(steps), depth_of(samples)), lambda_)
+
+    def _rounded(self, fit: Fit, lattice: ColorLattice, lambda_: float) -> Mesh:
         # A caller that asks for no rounding wants the fitted colours as they are.
-        lambda_ = 0.0 if self.color_step == 1 else lambda_for(error, len(fit.vertices))
+        if self.color_step == 1:
+            lambda_ = 0.0
         levels = quantize(fit.equations, fit.colors, fit.hierarchy, lattice, lambda_)
         return self._mesh(fit, lattice, levels)
 

@@ -23,8 +23,8 @@ import numpy as np
 
 from vmesh.arrays import Float64Array, SampleArray
 from vmesh.codec.writer import dumps, metadata_size
-from vmesh.encoder.draft import Draft, ThinnedDraft
-from vmesh.encoder.image import peak_of
+from vmesh.encoder.draft import Draft, ThinnedDraft, fewest_vertices
+from vmesh.encoder.image import is_small, peak_of
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.rate_model import rescaled_vertices, size_after_refinement
 from vmesh.encoder.tuning import Judge, spend, tune, tune_around
@@ -44,8 +44,10 @@ _MOST_GAIN: Final = 8.0
 # What a vertex may cost, of the error allowed for its pixel, to be removed where all pixels have
 # one: the error stays below that which is allowed.
 _SHARES: Final = (0.5, 0.1, 0.0)
-# Meshes of at most so many vertices have single levels changed.
-_FEW_VERTICES: Final = 40
+# A mesh without any error is taken before one that is worse and takes so many times its bytes.
+_HARDLY_LARGER: Final = 1.02
+# Attempts that go where the last one points.
+_FREE_ATTEMPTS: Final = 10
 
 
 class Candidate(NamedTuple):
@@ -96,19 +98,6 @@ def meet_size(
         If the smallest mesh is larger.
     """
     least = (1 - _SIZE_TOLERANCE) * target_size
-    for _ in range(_MAX_ATTEMPTS):
-        mesh = builder.build(draft)
-        size = len(dumps(mesh))
-        if least <= size <= target_size:
-            return mesh
-        before = draft.n_vertices
-        wanted = _vertices_below(mesh, size, target_size)
-        wanted = min(wanted, before - 1) if size > target_size else max(wanted, before + 1)
-        draft.resize(max(4, wanted))
-        report()
-        if draft.n_vertices == before:
-            break
-
     found: list[Candidate] = []
 
     def judge(mesh: Mesh) -> int:
@@ -118,8 +107,23 @@ def meet_size(
             return 0
         return 1 if candidate.size > target_size else -1
 
-    if not tune_around(draft, builder, judge) and max(c.size for c in found) < target_size:
-        tune(builder.fit(dense()), builder, judge)
+    bounds = _Bounds(draft)
+    for _ in range(_MAX_ATTEMPTS):
+        mesh = builder.build(draft)
+        verdict = judge(mesh)
+        if verdict == 0:
+            break
+        wanted = _vertices_below(mesh, found[-1].size, target_size)
+        if not bounds.resize(wanted, verdict):
+            break
+        report()
+    if verdict != 0:
+        verdict = tune_around(draft, builder, judge)
+    if verdict > 0:
+        draft.resize(4)
+        tune(builder.fit(draft), builder, judge)
+    if verdict < 0 or is_small(builder.image):
+        _tune_dense(dense, builder, judge)
     fitting = [candidate for candidate in found if candidate.size <= target_size]
     if not fitting:
         smallest = min(candidate.size for candidate in found)
@@ -159,29 +163,6 @@ def meet_psnr(
     """
     samples = builder.image.samples
     most = target_psnr + _PSNR_TOLERANCE
-    gain = _GAIN
-    earlier: tuple[float, float] | None = None
-    for attempt in range(_MAX_ATTEMPTS):
-        mesh = builder.build(draft)
-        psnr = measure_psnr(samples, mesh)
-        if target_psnr <= psnr <= most:
-            return mesh
-        before = draft.n_vertices
-        if earlier is not None and log2(before) != earlier[0]:
-            slope = (min(psnr, 99.0) - earlier[1]) / (log2(before) - earlier[0])
-            gain = min(max(slope, _LEAST_GAIN), _MOST_GAIN)
-        earlier = log2(before), min(psnr, 99.0)
-        aim = target_psnr + 0.5 * _PSNR_TOLERANCE
-        doublings = (aim - psnr) / gain
-        # Large changes shake the mesh: they become smaller from one attempt to the next.
-        furthest = 2.0 * _STEP_DECAY**attempt
-        wanted = round(before * 2.0 ** min(max(doublings, -furthest), furthest))
-        wanted = min(wanted, before - 1) if psnr > target_psnr else max(wanted, before + 1)
-        draft.resize(max(4, wanted))
-        report()
-        if draft.n_vertices == before:
-            break
-
     found: list[Candidate] = []
 
     def judge(mesh: Mesh) -> int:
@@ -191,12 +172,35 @@ def meet_psnr(
             return 0
         return 1 if candidate.psnr > most else -1
 
+    gain = _GAIN
+    earlier: tuple[float, float] | None = None
+    bounds = _Bounds(draft)
+    for attempt in range(_MAX_ATTEMPTS):
+        verdict = judge(builder.build(draft))
+        if verdict == 0:
+            break
+        before, psnr = draft.n_vertices, found[-1].psnr
+        if earlier is not None and log2(before) != earlier[0]:
+            slope = (min(psnr, 99.0) - earlier[1]) / (log2(before) - earlier[0])
+            gain = min(max(slope, _LEAST_GAIN), _MOST_GAIN)
+        earlier = log2(before), min(psnr, 99.0)
+        aim = target_psnr + 0.5 * _PSNR_TOLERANCE
+        doublings = (aim - psnr) / gain
+        # Large changes shake the mesh: they become smaller from one attempt to the next.
+        furthest = 2.0 * _STEP_DECAY**attempt
+        wanted = round(before * 2.0 ** min(max(doublings, -furthest), furthest))
+        if not bounds.resize(wanted, verdict):
+            break
+        report()
+    if verdict != 0:
+        verdict = tune_around(draft, builder, judge)
+
     def reached() -> list[Candidate]:
         return [candidate for candidate in found if candidate.psnr >= target_psnr]
 
-    is_met = tune_around(draft, builder, judge)
-    if not reached():
-        is_met = _tune_dense(dense, builder, target_psnr, judge)
+    if verdict < 0 or is_small(builder.image):
+        allowed = peak_of(samples) ** 2 / 10.0 ** (target_psnr / 10.0) * samples.shape[2]
+        _tune_dense(dense, builder, judge, allowed)
     if not reached():
         highest = max(candidate.psnr for candidate in found)
         raise ValueError(
@@ -205,17 +209,18 @@ def meet_psnr(
         )
     best = min(reached(), key=lambda c: (c.psnr > most, c.psnr if c.psnr > most else c.size))
     smallest = min(reached(), key=lambda c: (c.size, -c.psnr))
-    if smallest.psnr == np.inf:
-        return smallest.mesh  # Nothing worse is any smaller.
-    if is_met or best.mesh.n_vertices > _FEW_VERTICES:
+    is_worse_for_less = best.psnr <= most and best.size <= _HARDLY_LARGER * smallest.size
+    is_simple = smallest.mesh.n_vertices == fewest_vertices(builder.grid)
+    if smallest.psnr == np.inf and (is_simple or not is_worse_for_less):
+        return smallest.mesh
+    if best.psnr <= most or not is_small(builder.image):
         return best.mesh
     measure = partial(measure_psnr, samples)
     mesh = spend(best.mesh, measure, target_psnr, most)
     if measure(mesh) > most:
         # Where a level of these steps changes too much, one of the finest may not.
-        finest = builder.finest(builder.fit(dense()))
-        if finest.n_vertices <= _FEW_VERTICES:
-            mesh = min(mesh, spend(finest, measure, target_psnr, most), key=measure)
+        finest = max(reached(), key=lambda c: (c.psnr, -c.size)).mesh
+        mesh = min(mesh, spend(finest, measure, target_psnr, most), key=measure)
     return mesh
 
 
@@ -223,20 +228,49 @@ def _measured(builder: MeshBuilder, mesh: Mesh) -> Candidate:
     return Candidate(mesh, len(dumps(mesh)), measure_psnr(builder.image.samples, mesh))
 
 
+class _Bounds:
+    """Numbers of vertices that are known to be too few and too many.
+
+    Sizes and errors of meshes are not quite monotone in their number, and a search that ends
+    nowhere goes back and forth: after some attempts it keeps between the bounds.
+    """
+
+    def __init__(self, draft: Draft) -> None:
+        self._draft = draft
+        self._low, self._high = 3, np.iinfo(np.int64).max
+        self._n_attempts = 0
+
+    def resize(self, wanted: int, verdict: int) -> bool:
+        """Resize the draft, which has too many vertices, or too few; False if there is no way."""
+        before = self._draft.n_vertices
+        self._n_attempts += 1
+        if verdict > 0:
+            self._high, wanted = min(self._high, before), min(wanted, before - 1)
+        else:
+            self._low, wanted = max(self._low, before), max(wanted, before + 1)
+        if self._n_attempts > _FREE_ATTEMPTS:
+            if self._high - self._low <= 1:
+                return False
+            if not self._low < wanted < self._high:
+                wanted = (self._low + min(self._high, 2 * self._low)) // 2
+        self._draft.resize(max(4, wanted))
+        return self._draft.n_vertices != before
+
+
 def _tune_dense(
-    dense: Callable[[], ThinnedDraft], builder: MeshBuilder, target_psnr: float, judge: Judge
-) -> bool:
-    """Try meshes with a vertex at each pixel that needs one for a PSNR; True if that met it."""
-    samples = builder.image.samples
-    allowed = peak_of(samples) ** 2 / 10.0 ** (target_psnr / 10.0) * samples.shape[2]
-    for share in _SHARES:
+    dense: Callable[[], ThinnedDraft], builder: MeshBuilder, judge: Judge, allowed: float = 0.0
+) -> None:
+    """Try meshes with a vertex at each pixel that needs one.
+
+    `allowed` is the squared error allowed for a pixel; without any, only vertices that make no
+    difference are left out.
+    """
+    for share in _SHARES if allowed else _SHARES[-1:]:
         draft = dense()
-        if share:
-            draft.thin(4, lambda: None, max_cost=share * allowed)
-        verdict = tune(builder.fit(draft), builder, judge)
-        if verdict != -1:
-            return verdict == 0
-    return False
+        draft.thin(4, lambda: None, max_cost=share * allowed)
+        if tune(builder.fit(draft), builder, judge) != -1:
+            return
+    tune(builder.fit(dense()), builder, judge)
 
 
 def measure_psnr(samples: SampleArray, mesh: Mesh) -> float:

@@ -103,7 +103,12 @@ def flip_cost(lambda_: float) -> float:
 
 def luma_step(error: float, n_samples: int, peak: int) -> int:
     """Step of the luma lattice for a squared error over some samples of up to `peak`."""
-    return min(max(round(_STEP * sqrt(error / n_samples)), 1), peak)
+    return min(max(round(exact_luma_step(error, n_samples)), 1), peak)
+
+
+def exact_luma_step(error: float, n_samples: int) -> float:
+    """Step of the luma lattice, not rounded, for a squared error over some samples."""
+    return _STEP * sqrt(error / n_samples)
 
 
 def error_before_refinement(error: float) -> float:

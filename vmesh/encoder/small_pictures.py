@@ -23,7 +23,7 @@ from typing import Final
 
 from vmesh.codec.writer import dumps
 from vmesh.encoder.draft import Draft
-from vmesh.encoder.image import peak_of
+from vmesh.encoder.image import SMALL, is_small, peak_of
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.rate_control import measure_error
 from vmesh.encoder.rate_model import lambda_of_quality, lambda_of_small_picture, staying_cost
@@ -32,8 +32,6 @@ from vmesh.encoder.starting_mesh import dense_draft, quality_of
 from vmesh.encoder.threads import Run
 from vmesh.kernels.remeshing import WeightedImage
 from vmesh.mesh import Mesh
-
-_SMALL: Final = 1 << 12  # pixels of the largest such picture
 
 # Qualities whose meshes are made the ordinary way; and those whose price of a vertex says which
 # vertices stay where there is one at each pixel.
@@ -44,7 +42,7 @@ _DENSE_RUNGS: Final = (160, 140, 120, 110, 100, 90, 75)
 def takes_rungs(image: WeightedImage, settings: Settings) -> bool:
     """True for a small picture whose goal is a quality."""
     others = (getattr(settings, name) for name in GOALS if name != "quality")
-    return image.weights.size <= _SMALL and all(goal is None for goal in others)
+    return is_small(image) and all(goal is None for goal in others)
 
 
 def best_of_rungs(
@@ -64,7 +62,7 @@ def best_of_rungs(
     """
     image = builder.image
     lambda_ = lambda_of_small_picture(
-        quality_of(settings), peak_of(image.samples), image.weights.size / _SMALL
+        quality_of(settings), peak_of(image.samples), image.weights.size / SMALL
     )
 
     def weight(mesh: Mesh) -> float:
@@ -87,4 +85,4 @@ def _rungs(
         dense.thin(4, lambda: None, max_cost=cost)
         fit = builder.fit(dense)
         yield builder.finest(fit)
-        yield builder.rounded(fit, fit.error)
+        yield builder.build(dense)

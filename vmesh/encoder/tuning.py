@@ -17,6 +17,7 @@ import numpy as np
 from vmesh.encoder.draft import Draft
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.mesh_builder import Fit, MeshBuilder
+from vmesh.encoder.rate_model import lambda_for
 from vmesh.mesh import Mesh
 
 Judge = Callable[[Mesh], int]
@@ -24,22 +25,20 @@ Judge = Callable[[Mesh], int]
 
 # Numbers of vertices around that of a draft.
 _CHANGES: Final = (0, 1, -1, 2, -2, 3, -3)
-# Meshes of more vertices have sizes and errors that are fine enough.
-_MANY_VERTICES: Final = 5000
-# The error that colours are chosen for is searched for by halving, from so many octaves below that
-# of the draft, then around what is found so often, this far apart.
-_FINER: Final = 10.0
-_LEAST_MEAN_ERROR: Final = 0.05
-_BISECTIONS: Final = 16
-_NEIGHBOURS: Final = 12
-_APART: Final = 0.04
-_MAX_CHANGES: Final = 200  # of single levels
+# The error that colours are chosen for is searched for by halving, then up to so many octaves above
+# it that for which lambda is.
+_COARSER: Final = 12.0
+_BISECTIONS: Final = 12
+_LEAST_MEAN_ERROR: Final = 0.75
+_MANY_VERTICES: Final = 200  # sizes and errors of meshes of more are fine enough
+_MAX_TRIALS: Final = 5000  # of single levels
 
 
-def tune_around(draft: Draft, builder: MeshBuilder, judge: Judge) -> bool:
-    """Try colours of every coarseness, then with a few vertices more or less; True if that met it.
+def tune_around(draft: Draft, builder: MeshBuilder, judge: Judge) -> int:
+    """Try colours of every coarseness, then with a few vertices more or less.
 
-    More or fewer vertices are tried only where some colours are too fine and others too coarse.
+    Returns what :func:`tune` does, 0 instead of None. More or fewer vertices are tried only where
+    some colours are too fine and others too coarse.
     """
     n_vertices = draft.n_vertices
     for change in _CHANGES:
@@ -47,10 +46,10 @@ def tune_around(draft: Draft, builder: MeshBuilder, judge: Judge) -> bool:
             draft.resize(max(4, n_vertices + change))
         verdict = tune(builder.fit(draft), builder, judge)
         if verdict is not None:
-            return verdict == 0
+            return verdict
         if n_vertices > _MANY_VERTICES:
             break
-    return False
+    return 0
 
 
 def tune(fit: Fit, builder: MeshBuilder, judge: Judge) -> int | None:
@@ -59,29 +58,67 @@ def tune(fit: Fit, builder: MeshBuilder, judge: Judge) -> int | None:
     Returns 0 if it does, -1 if the finest colours are too coarse, 1 if the coarsest are too fine,
     and None if there are both but none in between meets it.
     """
-    samples = builder.image.samples
+    samples, n_vertices = builder.image.samples, len(fit.vertices)
 
-    def try_octave(octave: float) -> int:
-        return judge(builder.rounded(fit, 2.0**octave))
+    def by_error(octave: float) -> Mesh:
+        """Mesh in steps and levels for an error of so many octaves."""
+        error = 2.0**octave
+        return builder.rounded(fit, error, lambda_for(error, n_vertices))
 
-    low = log2(max(fit.error, _LEAST_MEAN_ERROR * samples.size)) - _FINER
+    def by_lambda(octave: float) -> Mesh:
+        """Mesh in steps that are too fine, and levels for an error of so many octaves."""
+        return builder.rounded(fit, 2.0**low, lambda_for(2.0**octave, n_vertices))
+
+    # A mean error for which all steps are 1.
+    low = log2(_LEAST_MEAN_ERROR * samples.size)
     high = log2(samples.size * float(peak_of(samples)) ** 2)
-    if (verdict := judge(builder.finest(fit))) <= 0:
+    finest = builder.finest(fit)
+    if (verdict := judge(finest)) <= 0:
         return verdict
-    if (verdict := try_octave(high)) >= 0:
+    if (verdict := judge(by_error(high))) >= 0:
         return verdict
+    if (verdict := judge(by_error(low))) == 0:
+        return 0
+    if verdict < 0:
+        return _mix(finest, by_error(low), judge)
+    # From one step to the next the mesh changes at once, with lambda level by level.
+    low, high = _halved(by_error, judge, low, high)
+    if low == high:
+        return 0
+    fine, coarse = _halved(by_lambda, judge, low, low + _COARSER)
+    if fine == coarse:
+        return 0
+    return _mix(by_lambda(fine), by_lambda(coarse), judge)
+
+
+def _halved(
+    mesh_of: Callable[[float], Mesh], judge: Judge, low: float, high: float
+) -> tuple[float, float]:
+    """Octaves next to each other of which one is too fine and the other too coarse.
+
+    They are the same where the mesh met the goal.
+    """
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
-        verdict = try_octave(middle)
+        verdict = judge(mesh_of(middle))
+        if verdict == 0:
+            return middle, middle
+        low, high = (middle, high) if verdict > 0 else (low, middle)
+    return low, high
+
+
+def _mix(fine: Mesh, coarse: Mesh, judge: Judge) -> int | None:
+    """Give more and more vertices of a mesh the levels of another; 0 if that met the goal."""
+    apart = np.flatnonzero((fine.levels != coarse.levels).any(axis=1))
+    few, many = 0, len(apart)
+    while many - few > 1:
+        middle = (few + many) // 2
+        levels = fine.levels.copy()
+        levels[apart[:middle]] = coarse.levels[apart[:middle]]
+        verdict = judge(fine.replaced(levels=levels))
         if verdict == 0:
             return 0
-        low, high = (middle, high) if verdict > 0 else (low, middle)
-    if len(fit.vertices) <= _MANY_VERTICES:
-        # Size and error are not quite monotone: what is nearby may be nearer.
-        for i in range(1, _NEIGHBOURS + 1):
-            for octave in (low - i * _APART, low + i * _APART):
-                if try_octave(octave) == 0:
-                    return 0
+        few, many = (middle, many) if verdict > 0 else (few, middle)
     return None
 
 
@@ -92,7 +129,7 @@ def spend(mesh: Mesh, measure: Callable[[Mesh], float], target_psnr: float, most
     """
     best, best_psnr = mesh, measure(mesh)
     lowest, highest = mesh.lattice.level_bounds()
-    for _ in range(_MAX_CHANGES):
+    for _ in range(_MAX_TRIALS // (2 * mesh.levels.size)):
         if best_psnr <= most:
             break
         found, found_psnr = best, best_psnr
