@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy.typing as npt
+
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.image import weighted
@@ -74,6 +76,7 @@ def inspect_encoding(
     photograph: SampleArray,
     settings: Settings,
     *,
+    weights: npt.ArrayLike | None = None,
     metadata: Metadata | None = None,
     limits: Limits = DEFAULT_LIMITS,
     progress: Progress | None = None,
@@ -82,14 +85,14 @@ def inspect_encoding(
 
     Parameters
     ----------
-    photograph, metadata, progress
+    photograph, weights, metadata, progress
         As for :func:`vmesh.encode`.
     settings : Settings
     limits : Limits
         Limits on the mesh and on what is drawn of it.
     """
-    salience, samples = propose(weighted(photograph), settings)
-    mesh = encode_with(photograph, settings, metadata=metadata, progress=progress)
+    salience, samples = propose(weighted(photograph, weights), settings)
+    mesh = encode_with(photograph, settings, weights=weights, metadata=metadata, progress=progress)
     limits.check_vertices(mesh.n_vertices)
     classes = samples.classes if settings.method == "blue-noise" else None
     return Inspection(photograph, salience, classes, mesh, limits)
