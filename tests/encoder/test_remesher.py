@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
-from tests.surfaces import check_mesh
+from tests.surfaces import check_mesh, evenly
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.draft import UNIT
@@ -99,7 +99,9 @@ def least_error(image: UInt8Array, vertices: Int32Array, triangles: Int32Array) 
     start = sample_colors(planes, vertices, UNIT)
     weights = np.ones(image.shape[:2])
     colors, _ = fit_components(planes, weights, vertices, triangles, UNIT, start)
-    errors = twins.triangle_errors(vertices.astype(np.int64), triangles.tolist(), colors, planes)
+    errors = twins.triangle_errors(
+        vertices.astype(np.int64), triangles.tolist(), colors, evenly(planes)
+    )
     return sum(errors)
 
 
