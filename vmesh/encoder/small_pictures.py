@@ -35,7 +35,7 @@ from vmesh.mesh import Mesh
 
 # Qualities whose meshes are made the ordinary way; and those whose price of a vertex says which
 # vertices stay where there is one at each pixel.
-_RUNGS: Final = (75, 0, 20, 40, 55, 65, 85, 92, 100)
+_RUNGS: Final = (75, 20, 45, 60, 90)
 _DENSE_RUNGS: Final = (160, 140, 120, 110, 100, 90, 75)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import sqrt
 from typing import Final
 
-from vmesh.encoder.draft import SampledDraft, dense_vertices, most_vertices
+from vmesh.encoder.draft import Draft, SampledDraft, dense_vertices, most_vertices
 from vmesh.encoder.effort import EFFORTS
 from vmesh.encoder.image import crop, peak_of
 from vmesh.encoder.proposals import propose
@@ -31,11 +31,15 @@ _LEAST_CHOICE: Final = 3
 # How often a picture is sampled in search of a lambda, and what factor from it is close enough.
 _MIN_SAMPLINGS: Final = 2
 _MAX_SAMPLINGS: Final = 12
-_CLOSE: Final = 2.0
+_CLOSE: Final = 4.0
+_CROWDED: Final = 0.4  # of the pixels are vertices
 
 
-def sampled_draft(image: WeightedImage, settings: Settings) -> SampledDraft:
-    """Draft of vertices where they are sampled, as many as the settings ask for."""
+def sampled_draft(image: WeightedImage, settings: Settings) -> Draft:
+    """Draft of vertices where they are sampled, as many as the settings ask for.
+
+    Where a quality takes most of the pixels, it is all of them less those that do not pay.
+    """
     height, width = image.weights.shape
     most = most_vertices(width, height)
 
@@ -46,7 +50,12 @@ def sampled_draft(image: WeightedImage, settings: Settings) -> SampledDraft:
     wanted = _wanted_vertices(settings, width, height)
     draft = SampledDraft(image, take, wanted or max(4, width * height // 100))
     if wanted is None and settings.target_psnr is None:
-        _approach(draft, lambda_of_quality(quality_of(settings), peak_of(image.samples)), most)
+        lambda_ = lambda_of_quality(quality_of(settings), peak_of(image.samples))
+        _approach(draft, lambda_, most)
+        if draft.n_vertices > _CROWDED * most:
+            dense = dense_draft(image, None, settings, run_here)
+            dense.thin(4, lambda: None, max_cost=staying_cost(lambda_))
+            return dense
     return draft
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final, Generic, TypeVar
 import numpy as np
 
 from vmesh.arrays import Int32Array
-from vmesh.encoder.draft import Draft, SampledDraft
+from vmesh.encoder.draft import Draft
 from vmesh.encoder.rate_model import ERROR_POWER, SAMPLED_POWER, lambda_of
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.threads import Run
@@ -122,7 +122,7 @@ class TiledDraft(Generic[Part]):
         self._joined = None
 
 
-class TiledSamples(TiledDraft[SampledDraft]):
+class TiledSamples(TiledDraft[Draft]):
     """A draft of vertices where they were sampled, tile by tile."""
 
     def balance(self) -> None:
