@@ -41,7 +41,8 @@ def soft() -> UInt8Array:
     """A faint wave with a little noise, in grey."""
     y, x = np.mgrid[:24, :32]
     grain = noise(24, 32, 1)[:, :, 0] % 7
-    return np.rint(120 + 6 * np.sin(x / 3) + y / 4 + grain).astype(np.uint8)
+    picture: UInt8Array = np.rint(120 + 6 * np.sin(x / 3) + y / 4 + grain).astype(np.uint8)
+    return picture
 
 
 KINDS: Final[dict[str, SampleArray]] = {
@@ -93,7 +94,7 @@ def test_more_quality_is_no_worse_at_higher_efforts_either(effort: int) -> None:
 @pytest.mark.parametrize("picture", [noise(66, 70), noise(2, 2500), checkerboard(72, 72, 5)])
 def test_pictures_too_large_for_that_do_not_collapse(picture: UInt8Array, effort: int) -> None:
     lower, higher = (reached(picture, quality=q, effort=effort) for q in (75, 100))
-    assert higher > lower - 0.5
+    assert higher >= lower
     assert higher > reached(picture, density=0.2, effort=effort)
 
 
@@ -164,5 +165,5 @@ def test_a_long_strip_meets_its_goals() -> None:
         assert 0.98 * 2000 <= len(dumps(encode(strip, target_size=2000, effort=effort))) <= 2000
         assert 35 <= reached(strip, target_psnr=35.0, effort=effort) <= 35.1
         levels = [reached(strip, quality=q, effort=effort) for q in (25, 60, 90, 100)]
-        assert all(a < b + 0.1 for a, b in pairwise(levels))
-        assert levels[-1] > 30
+        assert all(a < b + 0.2 for a, b in pairwise(levels))
+        assert levels[-1] > levels[0] + 1
