@@ -8,7 +8,7 @@ from tests.twins import directed_edges, in_circle_determinant
 from vmesh.arrays import Float64Array, Int32Array, Int64Array, UInt8Array
 from vmesh.color_lattice import ColorLattice
 from vmesh.kernels.delaunay import delaunay
-from vmesh.kernels.remeshing import Surface, make_workspace, measure
+from vmesh.kernels.remeshing import Surface, WeightedImage, make_workspace, measure
 from vmesh.mesh import Mesh
 
 
@@ -40,8 +40,19 @@ def scattered(width: int, height: int, n: int, seed: int) -> Int32Array:
     return np.array(sorted(points, key=lambda p: (p[1], p[0])), dtype=np.int32)
 
 
+def evenly(samples: UInt8Array) -> WeightedImage:
+    """A picture of which every pixel counts alike."""
+    return WeightedImage(samples, np.ones(samples.shape[:2]))
+
+
+def unevenly(samples: UInt8Array, seed: int = 0) -> WeightedImage:
+    """A picture of which some pixels count three times as much as others, and some nothing."""
+    weights = np.random.default_rng(seed).choice([0.0, 0.5, 1.0, 1.5, 3.0], samples.shape[:2])
+    return WeightedImage(samples, weights)
+
+
 def open_surface(
-    image: UInt8Array, vertices: Int32Array, colors: Float64Array, n_spare: int = 0
+    image: WeightedImage, vertices: Int32Array, colors: Float64Array, n_spare: int = 0
 ) -> Surface:
     """The Delaunay triangles of some vertices, measured, with work for more vertices."""
     triangles = delaunay(vertices)
@@ -63,9 +74,10 @@ def open_surface(
     return surface
 
 
-def measure_all(surface: Surface, image: UInt8Array) -> float:
+def measure_all(surface: Surface, image: WeightedImage) -> float:
     """Compute the errors of all triangles anew; their sum."""
-    measure(surface, image, make_workspace(image.shape[0], image.shape[2]), 0, len(surface.errors))
+    work = make_workspace(image.samples.shape[0], image.samples.shape[2])
+    measure(surface, image, work, 0, len(surface.errors))
     return float(surface.errors.sum())
 
 

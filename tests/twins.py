@@ -8,6 +8,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from vmesh.arrays import Float64Array, Int64Array, UInt8Array, UInt16Array
+from vmesh.kernels.remeshing import WeightedImage
 
 Point = tuple[int, int]
 Face = tuple[int, int, int]
@@ -207,28 +208,39 @@ def directed_edges(triangles: Iterable[Sequence[int]]) -> dict[tuple[int, int], 
     return edges
 
 
+def squares(image: WeightedImage) -> float:
+    """The error of a mesh that is black all over."""
+    counted = image.weights[:, :, None] * np.square(image.samples, dtype=np.float64)
+    return float(counted.sum())
+
+
 def triangle_errors(
-    points: Int64Array, triangles: Iterable[Sequence[int]], colors: Float64Array, image: UInt8Array
+    points: Int64Array,
+    triangles: Iterable[Sequence[int]],
+    colors: Float64Array,
+    image: WeightedImage,
 ) -> list[float]:
     """Squared error of each triangle over the pixels it holds, by looking at every pixel.
 
     `points` are in half pixels; a centre on an edge belongs to the triangle right of or below it.
     """
-    height, width = image.shape[:2]
+    samples, weights = image
+    height, width = weights.shape
     x, y = 2 * np.arange(width)[None, :] + 1, 2 * np.arange(height)[:, None] + 1
     errors = []
     for face in triangles:
         corners = [(int(points[v, 0]), int(points[v, 1])) for v in face]
         det = doubled_area(corners[0], corners[1], corners[2])
         inside = np.ones((height, width), dtype=bool)
-        value = np.zeros(image.shape)
+        value = np.zeros(samples.shape)
         for i in range(3):
             (ax, ay), (bx, by) = corners[(i + 1) % 3], corners[(i + 2) % 3]
             part = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
             counts = by < ay or (by == ay and bx > ax)
             inside &= (part > 0) | ((part == 0) & counts)
             value += (part / det)[:, :, None] * colors[face[i]]
-        errors.append(float(((value - image)[inside] ** 2).sum()))
+        squares = weights[:, :, None] * (value - samples) ** 2
+        errors.append(float(squares[inside].sum()))
     return errors
 
 
@@ -236,7 +248,7 @@ def star_error(
     points: Int64Array,
     triangles: Iterable[Sequence[int]],
     colors: Float64Array,
-    image: UInt8Array,
+    image: WeightedImage,
     v: int,
     place: Point,
     ridge: float,
@@ -262,7 +274,7 @@ def best_color(
     points: Int64Array,
     triangles: Iterable[Sequence[int]],
     colors: Float64Array,
-    image: UInt8Array,
+    image: WeightedImage,
     v: int,
     ridge: float,
 ) -> Float64Array:
@@ -276,17 +288,18 @@ def color_parabolas(
     points: Int64Array,
     star: Sequence[Sequence[int]],
     colors: Float64Array,
-    image: UInt8Array,
+    image: WeightedImage,
     v: int,
 ) -> list[tuple[float, float, float]]:
     """The error as a parabola in each component of a vertex's colour, from three of its points."""
     parabolas = []
-    for z in range(image.shape[2]):
+    for z in range(image.samples.shape[2]):
+        component = image._replace(samples=image.samples[:, :, z : z + 1])
         values = []
         for color in (0.0, 1.0, 2.0):
             tried = colors[:, z : z + 1].copy()
             tried[v] = color
-            values.append(sum(triangle_errors(points, star, tried, image[:, :, z : z + 1])))
+            values.append(sum(triangle_errors(points, star, tried, component)))
         bend = (values[2] - 2 * values[1] + values[0]) / 2
         parabolas.append((values[0], values[1] - values[0] - bend, bend))
     return parabolas
@@ -296,7 +309,7 @@ def predicted_changes(
     points: Int64Array,
     triangles: Iterable[Sequence[int]],
     colors: Float64Array,
-    image: UInt8Array,
+    image: WeightedImage,
     v: int,
     steps: Iterable[Point],
 ) -> dict[Point, float]:
@@ -305,8 +318,9 @@ def predicted_changes(
     A step d changes a pixel of weight w, in a triangle of gradient g, by w (k - g d), where k is
     the change of the vertex's colour, which is the best for each step.
     """
-    height, width = image.shape[:2]
-    rows = []  # component, residual, weight, and weight times gradient
+    height, width = image.weights.shape
+    # Component, residual, weight, and weight times gradient, by the root of what the pixel counts.
+    rows = []
     for face in triangles:
         if v not in face:
             continue
@@ -321,14 +335,16 @@ def predicted_changes(
             if parts is None:
                 continue
             weights = np.array(parts) / sum(parts)
-            for z in range(image.shape[2]):
-                residual = float(image[y, x, z]) - weights @ colors[own, z]
-                rows.append((z, residual, weights[0], *(weights[0] * gradients[:, z])))
+            root = np.sqrt(image.weights[y, x])
+            for z in range(image.samples.shape[2]):
+                residual = float(image.samples[y, x, z]) - weights @ colors[own, z]
+                weight = root * weights[0]
+                rows.append((z, root * residual, weight, *(weight * gradients[:, z])))
     table = np.array(rows)
     changes = {}
     for step in steps:
         total = 0.0
-        for z in range(image.shape[2]):
+        for z in range(image.samples.shape[2]):
             _, residual, weight, slope_x, slope_y = table[table[:, 0] == z].T
             moved = residual + slope_x * step[0] + slope_y * step[1]
             change = (weight @ moved) / (weight @ weight)

@@ -14,7 +14,7 @@ from benchmarks.photographs import Photograph
 from benchmarks.tables import Printer, Table
 from vmesh.arrays import UInt8Array
 from vmesh.encoder.colors import fit_colors
-from vmesh.encoder.image import premultiplied_planes
+from vmesh.encoder.image import premultiplied_planes, weighted
 from vmesh.encoder.salience import compute_salience
 from vmesh.encoder.sampling import sample
 from vmesh.kernels.delaunay import delaunay
@@ -63,7 +63,7 @@ def stages(pixels: UInt8Array, n_vertices: int) -> dict[str, Callable[[], object
     salience = compute_salience(premultiplied_planes(pixels))
     mesh = vmesh.encode(pixels, method="blue-noise", vertices=n_vertices)
     vertices, triangles = mesh.vertices, mesh.triangles
-    colors, _ = fit_colors(pixels, vertices, triangles, PIXEL_UNIT)
+    colors, _ = fit_colors(weighted(pixels), vertices, triangles, PIXEL_UNIT)
     data = vmesh.dumps(mesh)
     return {
         "salience": lambda: compute_salience(premultiplied_planes(pixels)),
@@ -72,7 +72,7 @@ def stages(pixels: UInt8Array, n_vertices: int) -> dict[str, Callable[[], object
         f"sampling to {n_vertices} points": lambda: sample(salience, n_points=n_vertices),
         TRIANGULATION: lambda: delaunay(vertices),
         QHULL: lambda: Delaunay(vertices),
-        FITTING: lambda: fit_colors(pixels, vertices, triangles, PIXEL_UNIT),
+        FITTING: lambda: fit_colors(weighted(pixels), vertices, triangles, PIXEL_UNIT),
         "quantization": lambda: mesh.lattice.levels_from_colors(np.rint(colors)),
         "dumps": lambda: vmesh.dumps(mesh),
         "loads": lambda: vmesh.loads(data),

@@ -13,6 +13,7 @@ from tests.strategies import meshes
 from tests.surfaces import scattered
 from vmesh.arrays import Int32Array
 from vmesh.codec.hierarchy import MAX_TRIANGLES, Hierarchy, build_hierarchy
+from vmesh.encoder.image import weighted
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
 from vmesh.kernels.delaunay import delaunay
@@ -116,7 +117,7 @@ def test_a_vertex_with_many_neighbours_waits_until_there_are_fewer() -> None:
 def sampled(chelsea: np.ndarray) -> Int32Array:
     """Vertices on a part of a photograph of 150 x 100 pixels."""
     part = np.ascontiguousarray(chelsea[:100, :150])
-    return propose(part, Settings(vertices=900))[1].vertices()
+    return propose(weighted(part), Settings(vertices=900))[1].vertices()
 
 
 def test_the_corners_of_the_canvas_come_before_all_others(sampled: Int32Array) -> None:

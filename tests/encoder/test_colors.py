@@ -9,7 +9,7 @@ from tests import twins
 from tests.pictures import disc, noise
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.encoder.colors import fit_colors, fit_components
-from vmesh.encoder.image import with_hidden_colors_replaced
+from vmesh.encoder.image import weighted, with_hidden_colors_replaced
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
@@ -18,7 +18,7 @@ from vmesh.kernels.delaunay import delaunay
 
 def mesh_on(image: UInt8Array, n: int) -> tuple[Int32Array, Int32Array, Float64Array]:
     """Vertices, triangles and the weights of the vertices at every pixel."""
-    vertices = propose(image, Settings(vertices=n))[1].vertices()
+    vertices = propose(weighted(image), Settings(vertices=n))[1].vertices()
     triangles = delaunay(vertices)
     positions = vertices.astype(np.int64) * 128
     return vertices, triangles, twins.barycentric_matrix(positions, triangles, *image.shape[:2])
@@ -31,7 +31,7 @@ def test_colors_are_those_of_least_squares_weighted_by_alpha(n_components: int) 
     if n_components == 4:
         image[:10, :, 3] = 3
     vertices, triangles, matrix = mesh_on(image, 30)
-    colors, equations = fit_colors(image, vertices, triangles, 2)
+    colors, equations = fit_colors(weighted(image), vertices, triangles, 2)
     for z in range(n_components):
         seen = image[:, :, 3].ravel() / 255 if n_components == 4 and z < 3 else np.ones(24 * 28)
         products, moments = matrix.T * seen @ matrix, matrix.T * seen @ image[:, :, z].ravel()
@@ -73,7 +73,7 @@ def test_a_fit_to_a_plane_finds_its_colors() -> None:
     rows, columns = np.mgrid[:24, :24] + 0.5
     planes = [4 * columns + 20, 250 - 5 * rows, 60 + 2 * columns + 3 * rows]
     picture = np.rint(np.stack(planes, axis=2)).astype(np.uint8)
-    colors, _ = fit_colors(picture, mesh.vertices, delaunay(mesh.vertices), mesh.unit)
+    colors, _ = fit_colors(weighted(picture), mesh.vertices, delaunay(mesh.vertices), mesh.unit)
     assert np.abs(colors - exact).max() < 4
 
 

@@ -10,6 +10,7 @@ from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import NormalEquations, fit_colors
+from vmesh.encoder.image import weighted
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.quantization import quantize
@@ -22,9 +23,9 @@ from vmesh.mesh import Mesh
 def fitted(
     image: UInt8Array, n: int
 ) -> tuple[Int32Array, Int32Array, Float64Array, list[NormalEquations]]:
-    vertices = propose(image, Settings(vertices=n))[1].vertices()
+    vertices = propose(weighted(image), Settings(vertices=n))[1].vertices()
     triangles = delaunay(vertices)
-    return vertices, triangles, *fit_colors(image, vertices, triangles, 2)
+    return vertices, triangles, *fit_colors(weighted(image), vertices, triangles, 2)
 
 
 def squared_error(equations: list[NormalEquations], samples: Float64Array) -> float:

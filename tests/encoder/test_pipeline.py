@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from typing import Any
@@ -27,7 +28,7 @@ from tests.pictures import (
 from tests.strategies import pictures
 from vmesh.arrays import UInt8Array
 from vmesh.codec.reader import loads
-from vmesh.codec.writer import dumps
+from vmesh.codec.writer import dumps, metadata_size
 from vmesh.encoder.colors import sample_colors
 from vmesh.encoder.image import premultiplied_planes
 from vmesh.encoder.pipeline import STAGES, count_steps, encode
@@ -226,8 +227,11 @@ def test_a_size_too_small_is_refused_with_the_size_it_takes(
     block = bytes(i * i * 31 % 251 for i in range(len(metadata)))
     with pytest.raises(ValueError, match=r"smallest file of this picture takes [0-9]+ bytes") as e:
         encode(cat, target_size=target_size, effort=effort, metadata=Metadata(xmp=block))
-    needed = int(str(e.value).split()[-2])
+    found = re.search(r"takes (\d+) bytes(?:, (\d+) of them metadata)?$", str(e.value))
+    assert found is not None
+    needed = int(found[1])
     assert needed > target_size
+    assert int(found[2] or 0) == metadata_size(Metadata(xmp=block))
     again = encode(cat, target_size=needed, effort=effort, metadata=Metadata(xmp=block))
     assert len(dumps(again)) <= needed
 
@@ -252,9 +256,9 @@ def test_a_picture_without_any_error_reaches_every_psnr(picture: UInt8Array, eff
     assert np.array_equal(drawn(mesh).reshape(picture.shape), picture)
 
 
-def test_a_psnr_out_of_reach_is_refused_with_what_is_reached() -> None:
-    with pytest.raises(ValueError, match=r"a mesh of this picture reaches [0-9.]+ dB, not 60"):
-        encode(noise(20, 30), target_psnr=60.0)
+def test_a_psnr_out_of_reach_of_the_colors_steps_is_refused_with_what_is_reached() -> None:
+    with pytest.raises(ValueError, match=r"reaches [0-9.]+ dB with colors in such steps, not 60"):
+        encode(noise(20, 30), target_psnr=60.0, color_step=30)
 
 
 @pytest.mark.parametrize("effort", [1, 5])

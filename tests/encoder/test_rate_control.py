@@ -11,6 +11,7 @@ from vmesh.arrays import UInt8Array
 from vmesh.codec.writer import dumps
 from vmesh.encoder.draft import SampledDraft
 from vmesh.encoder.effort import EFFORTS
+from vmesh.encoder.image import weighted
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.pipeline import encode
 from vmesh.encoder.proposals import propose
@@ -67,9 +68,9 @@ def test_a_sampled_draft_knows_its_error(n_components: int) -> None:
         image[5:, 10:, 3] = 0
 
     def take(n: int) -> Samples:
-        return propose(image, Settings(vertices=n))[1]
+        return propose(weighted(image), Settings(vertices=n))[1]
 
-    draft = SampledDraft(image, take, 60)
+    draft = SampledDraft(weighted(image), take, 60)
     vertices, triangles = draft.geometry()
     assert draft.n_vertices == len(vertices) == pytest.approx(60, rel=0.02)
     matrix = twins.barycentric_matrix(vertices.astype(np.int64) * 128, triangles, 20, 24)
@@ -85,13 +86,17 @@ def test_a_sampled_draft_knows_its_error(n_components: int) -> None:
 
 @pytest.mark.parametrize("n", [100, 300])
 def test_lambda_is_about_what_a_bit_saves_in_a_refined_mesh(chelsea: UInt8Array, n: int) -> None:
-    image = np.ascontiguousarray(chelsea[60:156, 100:228])
+    image = weighted(chelsea[60:156, 100:228])
 
     def error_and_bits(n_vertices: int) -> tuple[float, int]:
         draft.resize(n_vertices)
         return draft.error, 8 * len(dumps(MeshBuilder(image, Metadata(), None).build(draft)))
 
-    draft = Remesher(image, propose(image, Settings(vertices=4 * n))[1].vertices(), EFFORTS[5])
+    draft = Remesher(
+        image,
+        propose(image, Settings(vertices=4 * n))[1].vertices(),
+        EFFORTS[5],
+    )
     draft.thin(n, lambda: None)
     draft.refine(n, lambda: None)
     error, bits = error_and_bits(n)
@@ -102,7 +107,7 @@ def test_lambda_is_about_what_a_bit_saves_in_a_refined_mesh(chelsea: UInt8Array,
 
 
 def test_a_draft_of_fewer_vertices_has_more_error(chelsea: UInt8Array) -> None:
-    image = np.ascontiguousarray(chelsea[60:156, 100:228])
+    image = weighted(chelsea[60:156, 100:228])
     draft = SampledDraft(image, lambda n: propose(image, Settings(vertices=n))[1], 1000)
     errors = [draft.error]
     for n in (500, 200, 50):
@@ -113,7 +118,7 @@ def test_a_draft_of_fewer_vertices_has_more_error(chelsea: UInt8Array) -> None:
 
 
 def test_colors_are_as_fine_as_the_error_deserves(chelsea: UInt8Array) -> None:
-    image = np.ascontiguousarray(chelsea[60:156, 100:228])
+    image = weighted(chelsea[60:156, 100:228])
     draft = SampledDraft(image, lambda n: propose(image, Settings(vertices=n))[1], 1000)
     steps = []
     for n in (1500, 300, 60):

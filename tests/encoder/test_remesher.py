@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.pictures import PICTURES, checkerboard, disc, noise, step_edge
 from tests.strategies import pictures
-from tests.surfaces import check_mesh
+from tests.surfaces import check_mesh, evenly
 from vmesh.arrays import Int32Array, UInt8Array
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.draft import UNIT
 from vmesh.encoder.effort import Effort
-from vmesh.encoder.image import premultiplied_planes
+from vmesh.encoder.image import premultiplied_planes, weighted
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.settings import Settings
@@ -31,11 +31,11 @@ EFFORT = Effort(density=0.1, max_rounds=3, least_gain=0.0, share_decay=0.8)
 
 def draft_of(image: UInt8Array, n: int, effort: Effort = EFFORT) -> Remesher:
     """A draft that starts from about n sampled vertices."""
-    return Remesher(image, proposal(image, n), effort)
+    return Remesher(weighted(image), proposal(image, n), effort)
 
 
 def proposal(image: UInt8Array, n: int) -> Int32Array:
-    return propose(image, Settings(vertices=max(4, n)))[1].vertices()
+    return propose(weighted(image), Settings(vertices=max(4, n)))[1].vertices()
 
 
 def check_mesh_of(draft: Remesher, image: UInt8Array) -> None:
@@ -99,7 +99,9 @@ def least_error(image: UInt8Array, vertices: Int32Array, triangles: Int32Array) 
     start = sample_colors(planes, vertices, UNIT)
     weights = np.ones(image.shape[:2])
     colors, _ = fit_components(planes, weights, vertices, triangles, UNIT, start)
-    errors = twins.triangle_errors(vertices.astype(np.int64), triangles.tolist(), colors, planes)
+    errors = twins.triangle_errors(
+        vertices.astype(np.int64), triangles.tolist(), colors, evenly(planes)
+    )
     return sum(errors)
 
 
@@ -136,7 +138,7 @@ def test_every_picture_can_be_thinned_to_its_corners(name: str) -> None:
 def test_thinning_to_more_than_there_are_changes_nothing() -> None:
     image = noise(20, 30)
     vertices = proposal(image, 100)
-    draft = Remesher(image, vertices, EFFORT)
+    draft = Remesher(weighted(image), vertices, EFFORT)
     draft.thin(1000, lambda: None)
     assert np.array_equal(draft.geometry()[0], vertices)
 

@@ -12,7 +12,15 @@ from hypothesis import strategies as st
 from tests import twins
 from tests.pictures import PICTURES, noise, ramp, step_edge
 from tests.strategies import meshes, pictures
-from tests.surfaces import check_surface, measure_all, open_surface, scattered, triangles_of
+from tests.surfaces import (
+    check_surface,
+    evenly,
+    measure_all,
+    open_surface,
+    scattered,
+    triangles_of,
+    unevenly,
+)
 from vmesh.arrays import Float64Array, Int32Array, UInt8Array
 from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.remeshing import (
@@ -22,6 +30,7 @@ from vmesh.kernels.remeshing import (
     REACH,
     RIDGE,
     Surface,
+    WeightedImage,
     Workspace,
     flip_edges,
     insert,
@@ -34,11 +43,11 @@ from vmesh.kernels.remeshing import (
 from vmesh.mesh import Mesh
 
 
-def room_for(image: UInt8Array) -> Workspace:
-    return make_workspace(image.shape[0], image.shape[2])
+def room_for(image: WeightedImage) -> Workspace:
+    return make_workspace(image.samples.shape[0], image.samples.shape[2])
 
 
-def remove(surface: Surface, image: UInt8Array, n_remove: int, max_cost: float) -> int:
+def remove(surface: Surface, image: WeightedImage, n_remove: int, max_cost: float) -> int:
     """Remove the vertices that cost least, without chance; how many went."""
     work = room_for(image)
     n_points = len(surface.points)
@@ -51,13 +60,13 @@ def random_colors(n: int, n_components: int, seed: int = 0) -> Float64Array:
     return np.random.default_rng(seed).uniform(0, 255, (n, n_components))
 
 
-def total_error(surface: Surface, image: UInt8Array) -> float:
+def total_error(surface: Surface, image: WeightedImage) -> float:
     """The error of a surface by its twin."""
     triangles = triangles_of(surface).tolist()
     return sum(twins.triangle_errors(surface.points, triangles, surface.colors, image))
 
 
-def check_errors(surface: Surface, image: UInt8Array) -> None:
+def check_errors(surface: Surface, image: WeightedImage) -> None:
     """Check that each triangle in use knows its error."""
     expected = twins.triangle_errors(
         surface.points, triangles_of(surface).tolist(), surface.colors, image
@@ -65,9 +74,9 @@ def check_errors(surface: Surface, image: UInt8Array) -> None:
     assert surface.errors[surface.origin[::3] >= 0] == pytest.approx(expected, abs=1e-6)
 
 
-def surface_on(image: UInt8Array, n: int, seed: int, n_spare: int = 0) -> Surface:
+def surface_on(image: WeightedImage, n: int, seed: int, n_spare: int = 0) -> Surface:
     """Scattered vertices with random colours."""
-    height, width, n_components = image.shape
+    height, width, n_components = image.samples.shape
     vertices = scattered(width, height, n, seed)
     colors = random_colors(len(vertices), n_components, seed)
     return open_surface(image, vertices, colors, n_spare)
@@ -80,7 +89,7 @@ def surface_on(image: UInt8Array, n: int, seed: int, n_spare: int = 0) -> Surfac
 def test_errors_are_those_of_looking_at_every_pixel(
     mesh: Mesh, n_components: int, seed: int
 ) -> None:
-    image = noise(mesh.height, mesh.width, n_components, seed)
+    image = unevenly(noise(mesh.height, mesh.width, n_components, seed))
     vertices = mesh.canonical().vertices << 1 >> mesh.subdivision
     far = (vertices == mesh.vertices.max(axis=0) << 1 >> mesh.subdivision) | (vertices == 0)
     vertices = np.where(far, vertices, vertices | 1)
@@ -91,20 +100,20 @@ def test_errors_are_those_of_looking_at_every_pixel(
 
 @pytest.mark.parametrize("shape", [(1, 1, 3), (1, 60, 3), (60, 1, 1), (3, 200, 4), (50, 40, 3)])
 def test_the_triangles_share_the_error_of_the_picture(shape: tuple[int, int, int]) -> None:
-    image = noise(*shape)
+    image = unevenly(noise(*shape))
     corners = np.array([[0, 0], [2, 0], [0, 2], [2, 2]], dtype=np.int32)
     vertices = corners * np.array([shape[1], shape[0]], dtype=np.int32)
     surface = open_surface(image, vertices, np.zeros((4, shape[2])))
-    assert measure_all(surface, image) == np.square(image, dtype=float).sum()
+    assert measure_all(surface, image) == twins.squares(image)
 
 
 def test_a_vertex_on_an_edge_of_pixels_shares_them_out_exactly_once() -> None:
-    image = noise(9, 16, 3)
+    image = unevenly(noise(9, 16, 3))
     # Triangles whose sides run through pixel centres: level, upright and at 45 degrees.
     sites = [(0, 0), (32, 0), (9, 9), (23, 9), (9, 13), (0, 18), (32, 18)]
     vertices = np.array(sites, dtype=np.int32)
     surface = open_surface(image, vertices, np.zeros((7, 3)))
-    assert surface.errors.sum() == np.square(image, dtype=float).sum()
+    assert surface.errors.sum() == twins.squares(image)
     check_errors(surface, image)
 
 
@@ -112,7 +121,7 @@ def test_a_vertex_on_an_edge_of_pixels_shares_them_out_exactly_once() -> None:
 
 
 def errors_without_each(
-    vertices: Int32Array, colors: Float64Array, image: UInt8Array
+    vertices: Int32Array, colors: Float64Array, image: WeightedImage
 ) -> dict[int, float]:
     """Error of the Delaunay triangles of all vertices but one, by that one."""
     far = vertices.max(axis=0)
@@ -129,7 +138,7 @@ def errors_without_each(
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_vertex_that_costs_least_goes_first(seed: int) -> None:
-    image = noise(23, 29, 3, seed=seed)
+    image = unevenly(noise(23, 29, 3, seed=seed))
     surface = surface_on(image, 12, seed)
     for _ in range(14):
         used = np.flatnonzero(surface.leaving >= 0)
@@ -145,7 +154,7 @@ def test_the_vertex_that_costs_least_goes_first(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_costs_are_computed_anew_when_they_come_up_as_the_least(seed: int) -> None:
-    image = noise(23, 29, 3, seed=seed)
+    image = unevenly(noise(23, 29, 3, seed=seed))
     surface = surface_on(image, 16, seed)
     vertices, colors = surface.points.astype(np.int32), surface.colors.copy()
 
@@ -172,7 +181,7 @@ def test_costs_are_computed_anew_when_they_come_up_as_the_least(seed: int) -> No
 
 
 def test_vertices_that_cost_more_than_allowed_stay() -> None:
-    image = noise(23, 29, 3)
+    image = unevenly(noise(23, 29, 3))
     surface = surface_on(image, 12, 1)
     # As thinning removes them until each of those left costs more.
     while remove(surface, image, 1000, 2000.0):
@@ -196,10 +205,11 @@ def test_only_the_corners_are_left_in_the_end(name: str) -> None:
     centres = [(2 * x + 1, 2 * y + 1) for y in range(height) for x in range(width)]
     sites = [(0, 0), (2 * width, 0), *centres, (0, 2 * height), (2 * width, 2 * height)]
     vertices = np.array(sites, dtype=np.int32)
-    surface = open_surface(picture, vertices, random_colors(len(sites), n_components))
-    while remove(surface, picture, len(sites) // 3 + 1, np.inf):
+    image = unevenly(picture)
+    surface = open_surface(image, vertices, random_colors(len(sites), n_components))
+    while remove(surface, image, len(sites) // 3 + 1, np.inf):
         check_surface(surface, width, height)
-        check_errors(surface, picture)
+        check_errors(surface, image)
     left = surface.points[surface.leaving >= 0].tolist()
     assert left == [[0, 0], [2 * width, 0], [0, 2 * height], [2 * width, 2 * height]]
 
@@ -207,7 +217,7 @@ def test_only_the_corners_are_left_in_the_end(name: str) -> None:
 # --- Inserting ------------------------------------------------------------------------------------
 
 
-def proposals(surface: Surface, image: UInt8Array) -> tuple[Float64Array, np.ndarray]:
+def proposals(surface: Surface, image: WeightedImage) -> tuple[Float64Array, np.ndarray]:
     n_triangles = len(surface.errors)
     gains, places = np.full(n_triangles, np.nan), np.zeros((n_triangles, 2), dtype=np.int64)
     propose_insertions(surface, image, room_for(image), 0, len(gains), gains, places)
@@ -217,7 +227,7 @@ def proposals(surface: Surface, image: UInt8Array) -> tuple[Float64Array, np.nda
 @pytest.mark.parametrize("n_components", [1, 3, 4])
 @pytest.mark.parametrize("seed", range(3))
 def test_an_insertion_gains_what_was_proposed(n_components: int, seed: int) -> None:
-    image = noise(30, 40, n_components, seed)
+    image = unevenly(noise(30, 40, n_components, seed))
     surface = surface_on(image, 10, seed, n_spare=1)
     gains, places = proposals(surface, image)
     best = int(np.argmax(gains))
@@ -234,7 +244,7 @@ def test_an_insertion_gains_what_was_proposed(n_components: int, seed: int) -> N
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_gain_is_that_of_the_best_color_at_a_place_as_good_as_the_middle(seed: int) -> None:
-    image = noise(20, 24, 3, seed)
+    image = unevenly(noise(20, 24, 3, seed))
     surface = surface_on(image, 6, seed)
     gains, places = proposals(surface, image)
     for t, face in enumerate(triangles_of(surface).tolist()):
@@ -259,7 +269,7 @@ def test_the_gain_is_that_of_the_best_color_at_a_place_as_good_as_the_middle(see
 
 
 def test_no_two_insertions_share_a_side() -> None:
-    image = noise(30, 40, 3)
+    image = unevenly(noise(30, 40, 3))
     surface = surface_on(image, 20, 2, n_spare=50)
     before = triangles_of(surface).copy()
     gains, places = proposals(surface, image)
@@ -286,7 +296,7 @@ def test_no_two_insertions_share_a_side() -> None:
 
 @pytest.mark.parametrize("n_spare", [0, 1, 2, 5])
 def test_insertions_end_where_the_room_does(n_spare: int) -> None:
-    image = noise(30, 40, 3)
+    image = unevenly(noise(30, 40, 3))
     surface = surface_on(image, 20, 2, n_spare)
     gains, places = proposals(surface, image)
     order = np.argsort(-gains, kind="stable")
@@ -297,7 +307,7 @@ def test_insertions_end_where_the_room_does(n_spare: int) -> None:
 
 
 def test_no_more_are_inserted_than_were_asked_for() -> None:
-    image = noise(30, 40, 3)
+    image = unevenly(noise(30, 40, 3))
     surface = surface_on(image, 20, 2, n_spare=10)
     gains, places = proposals(surface, image)
     order = np.argsort(-gains, kind="stable")
@@ -306,7 +316,7 @@ def test_no_more_are_inserted_than_were_asked_for() -> None:
 
 
 def test_there_is_nothing_to_gain_where_there_is_no_error() -> None:
-    image = np.full((12, 10, 3), 70, dtype=np.uint8)
+    image = evenly(np.full((12, 10, 3), 70, dtype=np.uint8))
     vertices = scattered(10, 12, 4, 0)
     surface = open_surface(image, vertices, np.full((len(vertices), 3), 70.0))
     gains, _ = proposals(surface, image)
@@ -316,9 +326,9 @@ def test_there_is_nothing_to_gain_where_there_is_no_error() -> None:
 # --- Moving ---------------------------------------------------------------------------------------
 
 
-def walk(surface: Surface, image: UInt8Array, v: int) -> tuple[float, list[tuple[int, int]]]:
+def walk(surface: Surface, image: WeightedImage, v: int) -> tuple[float, list[tuple[int, int]]]:
     """The places that a vertex moves to one after the other, and the error in the last."""
-    far = (2 * image.shape[1], 2 * image.shape[0])
+    far = (2 * image.samples.shape[1], 2 * image.samples.shape[0])
     faces = triangles_of(surface).tolist()
     points, colors = surface.points.copy(), surface.colors.copy()
     start = (int(points[v, 0]), int(points[v, 1]))
@@ -352,7 +362,7 @@ def walk(surface: Surface, image: UInt8Array, v: int) -> tuple[float, list[tuple
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_vertex_walks_to_better_places_by_the_largest_predicted_decrease(seed: int) -> None:
-    image = noise(20, 24, 3, seed)
+    image = unevenly(noise(20, 24, 3, seed))
     work = room_for(image)
     for v in range(16):
         surface = surface_on(image, 8, seed)
@@ -375,7 +385,7 @@ def test_a_vertex_walks_to_better_places_by_the_largest_predicted_decrease(seed:
 @pytest.mark.parametrize("n_components", [1, 3, 4])
 @pytest.mark.parametrize("seed", range(3))
 def test_moving_never_raises_the_error(n_components: int, seed: int) -> None:
-    image = noise(40, 50, n_components, seed)
+    image = unevenly(noise(40, 50, n_components, seed))
     surface = surface_on(image, 24, seed)
     work = room_for(image)
     before = surface.errors.sum()
@@ -391,7 +401,7 @@ def test_moving_never_raises_the_error(n_components: int, seed: int) -> None:
 
 
 def test_vertices_come_to_rest_when_nothing_around_them_changes() -> None:
-    image = step_edge(40, 50)
+    image = evenly(step_edge(40, 50))
     surface = surface_on(image, 24, 5)
     work = room_for(image)
     for _ in range(100):
@@ -404,7 +414,7 @@ def test_vertices_come_to_rest_when_nothing_around_them_changes() -> None:
 
 
 def test_border_vertices_stay_on_their_side_and_corners_where_they_are() -> None:
-    image = noise(30, 40, 3)
+    image = unevenly(noise(30, 40, 3))
     surface = surface_on(image, 20, 3)
     before = surface.points.copy()
     for _ in range(5):
@@ -419,7 +429,7 @@ def test_border_vertices_stay_on_their_side_and_corners_where_they_are() -> None
 # --- Flipping -------------------------------------------------------------------------------------
 
 
-def flip_gains(surface: Surface, image: UInt8Array) -> list[float]:
+def flip_gains(surface: Surface, image: WeightedImage) -> list[float]:
     """What the flip of each edge of a convex quadrilateral would gain."""
     faces = [tuple(face) for face in triangles_of(surface).tolist()]
     edges = twins.directed_edges(faces)
@@ -442,7 +452,7 @@ def flip_gains(surface: Surface, image: UInt8Array) -> list[float]:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_flips_lower_the_error_until_none_is_left_that_would(seed: int) -> None:
-    image = noise(30, 40, 3, seed)
+    image = unevenly(noise(30, 40, 3, seed))
     surface = surface_on(image, 16, seed)
     work = room_for(image)
     assert max(flip_gains(surface, image)) > 0
@@ -461,7 +471,7 @@ def test_flips_lower_the_error_until_none_is_left_that_would(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
-    image = noise(30, 40, 3, seed)
+    image = unevenly(noise(30, 40, 3, seed))
     free, charged, dear = (surface_on(image, 16, seed) for _ in range(3))
     work = room_for(image)
     implied = {tuple(face) for face in triangles_of(dear).tolist()}
@@ -482,7 +492,7 @@ def test_an_edge_that_is_not_delaunay_has_to_gain_its_charge(seed: int) -> None:
 
 
 def test_a_high_charge_leads_back_to_the_delaunay_triangles() -> None:
-    image = noise(30, 40, 3)
+    image = unevenly(noise(30, 40, 3))
     surface = surface_on(image, 16, 1)
     implied = {frozenset(face) for face in triangles_of(surface).tolist()}
     work = room_for(image)
@@ -499,8 +509,8 @@ def test_a_high_charge_leads_back_to_the_delaunay_triangles() -> None:
 
 @given(pictures(), st.integers(0, 2**32 - 1))
 def test_a_surface_stays_sound_whatever_is_done_to_it(picture: UInt8Array, seed: int) -> None:
-    image = picture
-    height, width, n_components = image.shape
+    image = unevenly(picture, seed)
+    height, width, n_components = picture.shape
     random = np.random.default_rng(seed)
     chosen = random.random((height, width)) < 0.5
     centres = [(2 * x + 1, 2 * y + 1) for y, x in np.argwhere(chosen).tolist()]
@@ -525,7 +535,7 @@ def test_a_surface_stays_sound_whatever_is_done_to_it(picture: UInt8Array, seed:
 
 
 def test_a_ramp_is_held_by_its_corners_alone() -> None:
-    image = ramp(20, 30)
+    image = evenly(ramp(20, 30))
     surface = surface_on(image, 15, 0)
     x, y = surface.points.T / 2 - 0.5
     surface.colors[:] = np.stack([255 * x / 29, 255 * y / 19, 255 - 255 * x / 29], axis=1)
@@ -533,4 +543,4 @@ def test_a_ramp_is_held_by_its_corners_alone() -> None:
     before = surface.errors.sum()
     assert remove(surface, image, 100, np.inf) == 19
     # Rounding to whole levels is all that is left.
-    assert surface.errors.sum() < 1.2 * before < 0.2 * image.size
+    assert surface.errors.sum() < 1.2 * before < 0.2 * image.samples.size

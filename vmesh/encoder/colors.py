@@ -10,6 +10,7 @@ import numpy as np
 from vmesh.arrays import Float64Array, Int32Array, SampleArray
 from vmesh.encoder.image import peak_of
 from vmesh.kernels.least_squares import solve
+from vmesh.kernels.remeshing import WeightedImage
 from vmesh.kernels.scanline import SUBPIXEL, accumulate
 
 _RIDGE: Final = 1e-2  # in pixels: holds a vertex whose triangles cover no pixel centre
@@ -62,19 +63,18 @@ class NormalEquations:
 
 
 def fit_colors(
-    image: SampleArray, vertices: Int32Array, triangles: Int32Array, unit: int
+    image: WeightedImage, vertices: Int32Array, triangles: Int32Array, unit: int
 ) -> tuple[Float64Array, list[NormalEquations]]:
     """Colours that make the rendered mesh closest to the picture in squared error.
 
     Solves (A'GA + r I) c = A'G y + r s, where A holds the barycentric weights of every pixel's
     centre, G the pixels' weights, y the picture and s the sampled colours, with a small r. An
-    RGBA picture's colours count in proportion to their alpha, so that what is hidden in
+    RGBA picture's colours count in proportion to their alpha too, so that what is hidden in
     transparent pixels does not leak; alpha is fitted on its own.
 
     Parameters
     ----------
-    image : ndarray
-        Shape (h, w, c), uint8 or uint16.
+    image : WeightedImage
     vertices, triangles : ndarray
         Shapes (n, 2) and (m, 3), int32; they cover the picture.
     unit : int
@@ -87,15 +87,15 @@ def fit_colors(
     equations : list of NormalEquations
         Equations that were solved, for each sample component.
     """
-    start = sample_colors(image, vertices, unit)
-    whole = np.ones(image.shape[:2])
-    if image.shape[2] != 4:
-        return fit_components(image, whole, vertices, triangles, unit, start)
-    visible = np.maximum(image[:, :, 3] / peak_of(image), _HIDDEN_WEIGHT)
+    samples, whole = image
+    start = sample_colors(samples, vertices, unit)
+    if samples.shape[2] != 4:
+        return fit_components(samples, whole, vertices, triangles, unit, start)
+    visible = whole * np.maximum(samples[:, :, 3] / peak_of(samples), _HIDDEN_WEIGHT)
     colors, first = fit_components(
-        image[:, :, :3], visible, vertices, triangles, unit, start[:, :3]
+        samples[:, :, :3], visible, vertices, triangles, unit, start[:, :3]
     )
-    alpha, last = fit_components(image[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
+    alpha, last = fit_components(samples[:, :, 3:], whole, vertices, triangles, unit, start[:, 3:])
     return np.concatenate([colors, alpha], axis=1), first + last
 
 

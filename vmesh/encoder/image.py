@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
-from vmesh.arrays import SampleArray
+from vmesh.arrays import Float64Array, SampleArray
+from vmesh.grid import Tile
+from vmesh.kernels.remeshing import WeightedImage
 from vmesh.limits import MAX_SIDE
+
+# A pixel that does not matter still counts so much of the one that matters most: what nothing
+# holds to the picture could become anything.
+_LEAST_WEIGHT: Final = 1 / 1024
+
+SMALL: Final = 1 << 12
+"""Pictures of fewer pixels have many meshes made and compared."""
 
 
 def as_image(array: npt.ArrayLike) -> SampleArray:
@@ -27,6 +38,63 @@ def as_image(array: npt.ArrayLike) -> SampleArray:
             f"expected a picture of 1 to {MAX_SIDE} pixels a side, got {width} x {height}"
         )
     return np.ascontiguousarray(given)
+
+
+def weighted(array: npt.ArrayLike, weights: npt.ArrayLike | None = None) -> WeightedImage:
+    """The picture as :func:`as_image` takes it, and what a squared error in each pixel counts.
+
+    Parameters
+    ----------
+    array : array_like
+        Shape (h, w), (h, w, 3) or (h, w, 4), uint8 or uint16.
+    weights : array_like, optional
+        Shape (h, w), 0 or more, not all 0, of any scale; every pixel counts alike unless given.
+
+    Returns
+    -------
+    WeightedImage
+        Its weights have a mean of 1.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If the array or the weights are not as described.
+    """
+    samples = with_hidden_colors_replaced(as_image(array))
+    if weights is None:
+        return WeightedImage(samples, np.ones(samples.shape[:2]))
+    return WeightedImage(samples, _normalised(weights, samples.shape[:2]))
+
+
+def is_small(image: WeightedImage) -> bool:
+    """True for a picture so small that many meshes of it can be made and compared."""
+    return image.weights.size < SMALL
+
+
+def crop(image: WeightedImage, tile: Tile) -> WeightedImage:
+    """The part of a picture that lies in a tile."""
+    x, y, width, height = tile
+    part = np.s_[y : y + height, x : x + width]
+    return WeightedImage(*(np.ascontiguousarray(plane[part]) for plane in image))
+
+
+def _normalised(weights: npt.ArrayLike, shape: tuple[int, ...]) -> Float64Array:
+    """Weights with a mean of 1, none of them much smaller than the largest."""
+    given = np.asarray(weights)
+    if given.dtype.kind not in "buif":
+        raise TypeError(f"expected weights that are real numbers, got {given.dtype}")
+    if given.shape != shape:
+        raise ValueError(f"expected weights of the picture's shape {shape}, got {given.shape}")
+    given = given.astype(np.float64)
+    largest = float(given.max())
+    if not (given.min() >= 0.0 and 0.0 < largest < np.inf):
+        raise ValueError("expected weights that are finite, 0 or more, and not all 0")
+    if given.min() == largest:
+        return np.ones(shape)
+    # To single precision, in which a factor on all of them hardly ever shows.
+    shares = np.maximum(given / largest, _LEAST_WEIGHT).astype(np.float32).astype(np.float64)
+    result: Float64Array = shares / shares.mean()
+    return result
 
 
 def depth_of(image: SampleArray) -> int:

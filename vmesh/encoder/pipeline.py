@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from itertools import chain, repeat
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from vmesh.arrays import SampleArray
 from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.colors import fit_colors, sample_colors
-from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft
+from vmesh.encoder.draft import SUBDIVISION, UNIT, Draft, fewest_vertices, most_vertices
 from vmesh.encoder.effort import EFFORTS
-from vmesh.encoder.image import as_image, depth_of, peak_of, with_hidden_colors_replaced
+from vmesh.encoder.image import depth_of, peak_of, weighted
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.rate_control import meet_psnr, meet_size, refined_vertices
@@ -26,11 +25,19 @@ from vmesh.encoder.settings import (
     Sampler,
     Settings,
 )
-from vmesh.encoder.starting_mesh import sampled_draft, sampled_tiles, thinned, thinned_tiles
+from vmesh.encoder.small_pictures import best_of_rungs, takes_rungs
+from vmesh.encoder.starting_mesh import (
+    dense_draft,
+    sampled_draft,
+    sampled_tiles,
+    thinned,
+    thinned_tiles,
+)
 from vmesh.encoder.threads import Run, workers
 from vmesh.encoder.tiles.tiled_draft import REPORTS, TiledRemesher
 from vmesh.grid import Grid
 from vmesh.kernels.delaunay import delaunay
+from vmesh.kernels.remeshing import WeightedImage
 from vmesh.mesh import Mesh, Metadata
 from vmesh.progress import Progress, silent
 
@@ -44,6 +51,7 @@ _BLUE_NOISE_STEP: Final = 8
 def encode(
     array: npt.ArrayLike,
     *,
+    weights: npt.ArrayLike | None = None,
     method: Method = "adaptive",
     quality: int | None = None,
     target_size: int | None = None,
@@ -72,6 +80,11 @@ def encode(
     array : array_like
         Shape (h, w), (h, w, 3) or (h, w, 4), uint8 or uint16: grey, RGB or RGBA, alpha not
         multiplied. The mesh has samples of as many bits.
+    weights : array_like, optional
+        Shape (h, w), real numbers of 0 or more, not all 0: what a squared error in each pixel
+        counts, in every decision on vertices and colours. Only their proportions matter. Where
+        they are 0 the mesh still follows the picture roughly. Every pixel counts alike unless
+        given.
     method : {"adaptive", "blue-noise"}
         How vertices are found: sampled densely, thinned to those that matter most and moved to
         where they serve best; or sampled from the salience and left there.
@@ -141,31 +154,58 @@ def encode(
         seed=seed,
         threads=threads,
     )
-    return encode_with(array, settings, metadata=metadata, progress=progress)
+    return encode_with(array, settings, weights=weights, metadata=metadata, progress=progress)
 
 
 def encode_with(
     array: npt.ArrayLike,
     chosen: Settings,
     *,
+    weights: npt.ArrayLike | None = None,
     metadata: Metadata | None = None,
     progress: Progress | None = None,
 ) -> Mesh:
     """Mesh of a picture by settings that are made already; the rest is as for :func:`encode`."""
     report = progress or silent
-    image = with_hidden_colors_replaced(as_image(array))
+    image = weighted(array, weights)
     if chosen.method == "blue-noise":
         return _encode_blue_noise(image, chosen, metadata or Metadata(), report)
     report("sampling")
     grid = _grid(image, chosen)
     builder = MeshBuilder(image, metadata or Metadata(), chosen.color_step, grid)
     with workers(chosen.threads) as run:
-        if chosen.effort == 1:
-            draft = _sample(image, grid, chosen, run)
-        else:
-            draft = _remesh(image, chosen, builder, report, run)
+        if takes_rungs(image, chosen):
+            reports = chain([report], repeat(silent))  # once is enough
+            mesh = best_of_rungs(
+                builder, chosen, lambda rung: _draft(rung, builder, next(reports), run), run
+            )
+            report("colors")
+            return mesh
+        draft = _draft(chosen, builder, report, run)
         report("colors")
-        return _meet_goal(draft, builder, chosen, lambda: report("rate control"))
+        return _meet_goal(draft, builder, chosen, report, run)
+
+
+def _draft(settings: Settings, builder: MeshBuilder, report: Progress, run: Run) -> Draft:
+    """Draft with as many vertices as the settings ask for, or about as many as their goal takes."""
+    height, width = builder.image.weights.shape
+    draft: Draft
+    if settings.effort == 1:
+        draft = _sample(builder.image, builder.grid, settings, run)
+    else:
+        draft = _remesh(builder.image, settings, builder, report, run)
+    wanted = settings.n_vertices(width, height)
+    if wanted is None:
+        return draft
+    fewest, most = fewest_vertices(builder.grid), most_vertices(width, height, builder.grid)
+    wanted = min(max(wanted, fewest), most)
+    if draft.n_vertices != wanted:
+        draft.resize(wanted)
+    if draft.n_vertices != wanted:
+        dense = dense_draft(builder.image, builder.grid, settings, run)
+        dense.thin_exactly(wanted)
+        draft = dense
+    return draft
 
 
 def count_steps(settings: Settings) -> int:
@@ -177,34 +217,34 @@ def count_steps(settings: Settings) -> int:
 
 
 def _encode_blue_noise(
-    image: SampleArray, settings: Settings, metadata: Metadata, report: Progress
+    image: WeightedImage, settings: Settings, metadata: Metadata, report: Progress
 ) -> Mesh:
     """Mesh by the method of Zhao, Feng and Zhou (2013): vertices stay where they are sampled."""
-    height, width, n_components = image.shape
+    height, width, n_components = image.samples.shape
     report("sampling")
-    _, samples = propose(image, settings)
-    vertices = samples.vertices()
+    _, sampled = propose(image, settings)
+    vertices = sampled.vertices()
     triangles = delaunay(vertices)
     report("colors")
     if settings.colors == "fitted":
         colors, _ = fit_colors(image, vertices, triangles, UNIT)
     else:
-        colors = sample_colors(image, vertices, UNIT)
-    step = settings.color_step or _BLUE_NOISE_STEP * peak_of(image) // 255
-    lattice = ColorLattice.uniform(n_components, step, depth_of(image))
+        colors = sample_colors(image.samples, vertices, UNIT)
+    step = settings.color_step or _BLUE_NOISE_STEP * peak_of(image.samples) // 255
+    lattice = ColorLattice.uniform(n_components, step, depth_of(image.samples))
     levels = lattice.levels_from_colors(np.rint(colors))
     return Mesh(width, height, vertices, triangles, levels, lattice, SUBDIVISION, metadata)
 
 
-def _grid(image: SampleArray, settings: Settings) -> Grid | None:
+def _grid(image: WeightedImage, settings: Settings) -> Grid | None:
     """The tiles of a picture, None where one would hold all of it."""
-    height, width = image.shape[:2]
+    height, width = image.weights.shape
     if settings.tile is None or settings.tile >= max(width, height):
         return None
     return Grid(width, height, settings.tile)
 
 
-def _sample(image: SampleArray, grid: Grid | None, settings: Settings, run: Run) -> Draft:
+def _sample(image: WeightedImage, grid: Grid | None, settings: Settings, run: Run) -> Draft:
     """Draft of vertices where they are sampled."""
     if grid is None:
         return sampled_draft(image, settings)
@@ -212,10 +252,10 @@ def _sample(image: SampleArray, grid: Grid | None, settings: Settings, run: Run)
 
 
 def _remesh(
-    image: SampleArray, settings: Settings, builder: MeshBuilder, report: Progress, run: Run
+    image: WeightedImage, settings: Settings, builder: MeshBuilder, report: Progress, run: Run
 ) -> Draft:
     """Draft of the vertices that matter most in a dense sample, moved to better places."""
-    height, width = image.shape[:2]
+    height, width = image.weights.shape
     draft: Remesher | TiledRemesher
     if builder.grid is None:
         draft = thinned(image, settings, lambda: report("thinning"), run)
@@ -225,18 +265,24 @@ def _remesh(
     n_vertices = wanted or draft.n_vertices
     if settings.target_size is not None:
         n_vertices = refined_vertices(builder.build(draft), settings.target_size)
-    draft.refine(min(n_vertices, width * height), lambda: report("refinement"))
-    if wanted is not None and draft.n_vertices != min(wanted, width * height):
-        draft.resize(min(wanted, width * height))
+    most = most_vertices(width, height, builder.grid)
+    draft.refine(min(n_vertices, most), lambda: report("refinement"))
     return draft
 
 
 def _meet_goal(
-    draft: Draft, builder: MeshBuilder, settings: Settings, report: Callable[[], None]
+    draft: Draft, builder: MeshBuilder, settings: Settings, report: Progress, run: Run
 ) -> Mesh:
     """Mesh of a draft, resized where the settings ask for a size or a PSNR."""
+
+    def dense() -> Remesher | TiledRemesher:
+        return dense_draft(builder.image, builder.grid, settings, run)
+
+    def step() -> None:
+        report("rate control")
+
     if settings.target_size is not None:
-        return meet_size(draft, builder, settings.target_size, report)
+        return meet_size(draft, dense, builder, settings.target_size, step)
     if settings.target_psnr is not None:
-        return meet_psnr(draft, builder, settings.target_psnr, report)
+        return meet_psnr(draft, dense, builder, settings.target_psnr, step)
     return builder.build(draft)

@@ -1,23 +1,34 @@
-"""Rate control: how many vertices a mesh needs for a wanted size or error.
+"""Rate control: the mesh that meets a size or an error.
 
 One lambda decides which vertices are worth their bits, which flips, and which levels
-(``rate_model``). Fewer vertices go with a larger lambda, so the number of vertices is all there is
-to search for.
+(``rate_model``). Fewer vertices go with a larger lambda, so the number of vertices is what is
+searched for first. A small picture may have no number that meets the goal: then its colours are
+made coarser or finer than the error asks for, and at last, in a picture of a few pixels, single
+levels are changed::
+
+    vertices         size, PSNR in steps of a vertex
+    coarseness       of the colours, continuous: steps and lambda
+    every pixel      a vertex, where no other mesh comes close enough
+    single levels    where each of them is more than the tolerance
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import log2, log10
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from vmesh.arrays import SampleArray
+from vmesh.arrays import Float64Array, SampleArray
 from vmesh.codec.writer import dumps, metadata_size
-from vmesh.encoder.draft import Draft
+from vmesh.encoder.draft import Draft, ThinnedDraft, fewest_vertices
+from vmesh.encoder.image import is_small, peak_of
 from vmesh.encoder.mesh_builder import MeshBuilder
 from vmesh.encoder.rate_model import rescaled_vertices, size_after_refinement
+from vmesh.encoder.tuning import Judge, spend, tune, tune_around
+from vmesh.kernels.remeshing import WeightedImage
 from vmesh.kernels.scanline import SUBPIXEL, draw
 from vmesh.mesh import Mesh
 
@@ -29,6 +40,22 @@ _STEP_DECAY: Final = 0.8
 _GAIN: Final = 2.4
 _LEAST_GAIN: Final = 1.5
 _MOST_GAIN: Final = 8.0
+
+# What a vertex may cost, of the error allowed for its pixel, to be removed where all pixels have
+# one: the error stays below that which is allowed.
+_SHARES: Final = (0.5, 0.1, 0.0)
+# A mesh without any error is taken before one that is worse and takes so many times its bytes.
+_HARDLY_LARGER: Final = 1.02
+# Attempts that go where the last one points.
+_FREE_ATTEMPTS: Final = 10
+
+
+class Candidate(NamedTuple):
+    """A mesh, and what its file takes and shows."""
+
+    mesh: Mesh
+    size: int
+    psnr: float
 
 
 def refined_vertices(mesh: Mesh, target_size: int) -> int:
@@ -44,58 +71,115 @@ def _vertices_below(mesh: Mesh, size: int, target_size: int) -> int:
 
 
 def meet_size(
-    draft: Draft, builder: MeshBuilder, target_size: int, report: Callable[[], None]
+    draft: Draft,
+    dense: Callable[[], ThinnedDraft],
+    builder: MeshBuilder,
+    target_size: int,
+    report: Callable[[], None],
 ) -> Mesh:
-    """The best mesh whose file is not larger than `target_size`, and within 2 % of it.
+    """The best mesh found whose file is not larger than `target_size`, and within 2 % of it.
+
+    A picture whose mesh without any error is smaller gets that.
+
+    Parameters
+    ----------
+    draft : Draft
+    dense : callable
+        Draft with a vertex at each pixel.
+    builder : MeshBuilder
+    target_size : int
+        Bytes.
+    report : callable
+        Called after each attempt.
 
     Raises
     ------
     ValueError
         If the smallest mesh is larger.
     """
-    best: Mesh | None = None
-    best_size = 0
+    least = (1 - _SIZE_TOLERANCE) * target_size
+    found: list[Candidate] = []
+
+    def judge(mesh: Mesh) -> int:
+        candidate = _measured(builder, mesh)
+        found.append(candidate)
+        if least <= candidate.size <= target_size:
+            return 0
+        return 1 if candidate.size > target_size else -1
+
+    bounds = _Bounds(draft)
     for _ in range(_MAX_ATTEMPTS):
         mesh = builder.build(draft)
-        size = len(dumps(mesh))
-        if best_size < size <= target_size:
-            best, best_size = mesh, size
-        if (1 - _SIZE_TOLERANCE) * target_size <= size <= target_size:
+        verdict = judge(mesh)
+        if verdict == 0:
             break
-        before = draft.n_vertices
-        wanted = _vertices_below(mesh, size, target_size)
-        wanted = min(wanted, before - 1) if size > target_size else max(wanted, before + 1)
-        draft.resize(max(4, wanted))
+        wanted = _vertices_below(mesh, found[-1].size, target_size)
+        if not bounds.resize(wanted, verdict):
+            break
         report()
-        if draft.n_vertices == before:
-            break
-    if best is None:
-        raise ValueError(f"the smallest file of this picture takes {size} bytes")
-    return best
+    if verdict != 0:
+        verdict = tune_around(draft, builder, judge)
+    if verdict > 0:
+        draft.resize(4)
+        tune(builder.fit(draft), builder, judge)
+    if verdict < 0 or is_small(builder.image):
+        _tune_dense(dense, builder, judge)
+    fitting = [candidate for candidate in found if candidate.size <= target_size]
+    if not fitting:
+        smallest = min(candidate.size for candidate in found)
+        share = metadata_size(builder.metadata)
+        metadata = f", {share} of them metadata" if share else ""
+        raise ValueError(f"the smallest file of this picture takes {smallest} bytes{metadata}")
+    near = [candidate for candidate in fitting if candidate.size >= least]
+    return max(near or fitting, key=lambda c: (c.psnr, -c.size)).mesh
 
 
 def meet_psnr(
-    draft: Draft, builder: MeshBuilder, target_psnr: float, report: Callable[[], None]
+    draft: Draft,
+    dense: Callable[[], ThinnedDraft],
+    builder: MeshBuilder,
+    target_psnr: float,
+    report: Callable[[], None],
 ) -> Mesh:
     """The smallest mesh found whose PSNR is at least `target_psnr`, and within 0.1 dB of it.
+
+    Where nothing is both, as in a picture of one colour, it is the nearest above that was found.
+
+    Parameters
+    ----------
+    draft : Draft
+    dense : callable
+        Draft with a vertex at each pixel.
+    builder : MeshBuilder
+    target_psnr : float
+        Decibels.
+    report : callable
+        Called after each attempt.
 
     Raises
     ------
     ValueError
-        If no mesh of the picture reaches it.
+        If no mesh of the picture reaches it, as with colours that are rounded to large steps.
     """
-    best: Mesh | None = None
-    best_psnr = np.inf
+    samples = builder.image.samples
+    most = target_psnr + _PSNR_TOLERANCE
+    found: list[Candidate] = []
+
+    def judge(mesh: Mesh) -> int:
+        candidate = _measured(builder, mesh)
+        found.append(candidate)
+        if target_psnr <= candidate.psnr <= most:
+            return 0
+        return 1 if candidate.psnr > most else -1
+
     gain = _GAIN
     earlier: tuple[float, float] | None = None
+    bounds = _Bounds(draft)
     for attempt in range(_MAX_ATTEMPTS):
-        mesh = builder.build(draft)
-        psnr = measure_psnr(builder.image, mesh)
-        if psnr >= target_psnr and (best is None or psnr < best_psnr):
-            best, best_psnr = mesh, psnr
-        if target_psnr <= psnr <= target_psnr + _PSNR_TOLERANCE:
+        verdict = judge(builder.build(draft))
+        if verdict == 0:
             break
-        before = draft.n_vertices
+        before, psnr = draft.n_vertices, found[-1].psnr
         if earlier is not None and log2(before) != earlier[0]:
             slope = (min(psnr, 99.0) - earlier[1]) / (log2(before) - earlier[0])
             gain = min(max(slope, _LEAST_GAIN), _MOST_GAIN)
@@ -103,25 +187,109 @@ def meet_psnr(
         aim = target_psnr + 0.5 * _PSNR_TOLERANCE
         doublings = (aim - psnr) / gain
         # Large changes shake the mesh: they become smaller from one attempt to the next.
-        most = 2.0 * _STEP_DECAY**attempt
-        wanted = round(before * 2.0 ** min(max(doublings, -most), most))
-        wanted = min(wanted, before - 1) if psnr > target_psnr else max(wanted, before + 1)
-        draft.resize(max(4, wanted))
-        report()
-        if draft.n_vertices == before:
+        furthest = 2.0 * _STEP_DECAY**attempt
+        wanted = round(before * 2.0 ** min(max(doublings, -furthest), furthest))
+        if not bounds.resize(wanted, verdict):
             break
-    if best is None:
-        raise ValueError(f"a mesh of this picture reaches {psnr:.2f} dB, not {target_psnr:g}")
-    return best
+        report()
+    if verdict != 0:
+        verdict = tune_around(draft, builder, judge)
+
+    def reached() -> list[Candidate]:
+        return [candidate for candidate in found if candidate.psnr >= target_psnr]
+
+    if verdict < 0 or is_small(builder.image):
+        allowed = peak_of(samples) ** 2 / 10.0 ** (target_psnr / 10.0) * samples.shape[2]
+        _tune_dense(dense, builder, judge, allowed)
+    if not reached():
+        highest = max(candidate.psnr for candidate in found)
+        raise ValueError(
+            f"a mesh of this picture reaches {highest:.2f} dB with colors in such steps, "
+            f"not {target_psnr:g}"
+        )
+    best = min(reached(), key=lambda c: (c.psnr > most, c.psnr if c.psnr > most else c.size))
+    smallest = min(reached(), key=lambda c: (c.size, -c.psnr))
+    is_worse_for_less = best.psnr <= most and best.size <= _HARDLY_LARGER * smallest.size
+    is_simple = smallest.mesh.n_vertices == fewest_vertices(builder.grid)
+    if smallest.psnr == np.inf and (is_simple or not is_worse_for_less):
+        return smallest.mesh
+    if best.psnr <= most or not is_small(builder.image):
+        return best.mesh
+    measure = partial(measure_psnr, samples)
+    mesh = spend(best.mesh, measure, target_psnr, most)
+    if measure(mesh) > most:
+        # Where a level of these steps changes too much, one of the finest may not.
+        finest = max(reached(), key=lambda c: (c.psnr, -c.size)).mesh
+        mesh = min(mesh, spend(finest, measure, target_psnr, most), key=measure)
+    return mesh
 
 
-def measure_psnr(image: SampleArray, mesh: Mesh) -> float:
+def _measured(builder: MeshBuilder, mesh: Mesh) -> Candidate:
+    return Candidate(mesh, len(dumps(mesh)), measure_psnr(builder.image.samples, mesh))
+
+
+class _Bounds:
+    """Numbers of vertices that are known to be too few and too many.
+
+    Sizes and errors of meshes are not quite monotone in their number, and a search that ends
+    nowhere goes back and forth: after some attempts it keeps between the bounds.
+    """
+
+    def __init__(self, draft: Draft) -> None:
+        self._draft = draft
+        self._low, self._high = 3, np.iinfo(np.int64).max
+        self._n_attempts = 0
+
+    def resize(self, wanted: int, verdict: int) -> bool:
+        """Resize the draft, which has too many vertices, or too few; False if there is no way."""
+        before = self._draft.n_vertices
+        self._n_attempts += 1
+        if verdict > 0:
+            self._high, wanted = min(self._high, before), min(wanted, before - 1)
+        else:
+            self._low, wanted = max(self._low, before), max(wanted, before + 1)
+        if self._n_attempts > _FREE_ATTEMPTS:
+            if self._high - self._low <= 1:
+                return False
+            if not self._low < wanted < self._high:
+                wanted = (self._low + min(self._high, 2 * self._low)) // 2
+        self._draft.resize(max(4, wanted))
+        return self._draft.n_vertices != before
+
+
+def _tune_dense(
+    dense: Callable[[], ThinnedDraft], builder: MeshBuilder, judge: Judge, allowed: float = 0.0
+) -> None:
+    """Try meshes with a vertex at each pixel that needs one.
+
+    `allowed` is the squared error allowed for a pixel; without any, only vertices that make no
+    difference are left out.
+    """
+    for share in _SHARES if allowed else _SHARES[-1:]:
+        draft = dense()
+        draft.thin(4, lambda: None, max_cost=share * allowed)
+        if tune(builder.fit(draft), builder, judge) != -1:
+            return
+    tune(builder.fit(dense()), builder, judge)
+
+
+def measure_psnr(samples: SampleArray, mesh: Mesh) -> float:
     """PSNR of a mesh at native size over all samples, in decibels; colours as they are seen."""
-    raster = np.zeros_like(image)
+    error = float(np.mean(_squared_errors(samples, mesh)))
+    return 10.0 * log10(mesh.lattice.max_sample**2 / error) if error > 0.0 else np.inf
+
+
+def measure_error(image: WeightedImage, mesh: Mesh) -> float:
+    """Squared error of a mesh at native size, summed over all samples as each pixel counts."""
+    return float((_squared_errors(image.samples, mesh) * image.weights[:, :, None]).sum())
+
+
+def _squared_errors(samples: SampleArray, mesh: Mesh) -> Float64Array:
+    """Squared error of every sample; colours as they are seen."""
+    raster = np.zeros_like(samples)
     vertices = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
     draw(vertices, mesh.triangles, mesh.colors, raster)
-    difference = raster.astype(np.float64) - image
-    if image.shape[2] == 4:
-        difference[:, :, :3] *= image[:, :, 3:] / mesh.lattice.max_sample
-    error = float(np.mean(difference * difference))
-    return 10.0 * log10(mesh.lattice.max_sample**2 / error) if error > 0.0 else np.inf
+    difference = raster.astype(np.float64) - samples
+    if samples.shape[2] == 4:
+        difference[:, :, :3] *= samples[:, :, 3:] / mesh.lattice.max_sample
+    return difference * difference

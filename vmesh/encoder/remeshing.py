@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, Int32Array, Int64Array, SampleArray
+from vmesh.arrays import Float64Array, Int32Array, Int64Array
 from vmesh.encoder.colors import fit_components, sample_colors
 from vmesh.encoder.draft import UNIT
 from vmesh.encoder.effort import Effort
@@ -19,6 +19,7 @@ from vmesh.kernels.delaunay import delaunay
 from vmesh.kernels.half_edges import find_twins, sort_triangles
 from vmesh.kernels.remeshing import (
     Surface,
+    WeightedImage,
     Workspace,
     flip_edges,
     insert,
@@ -44,6 +45,7 @@ _CHANCE: Final = 8.0
 _SMALL_CHANGE: Final = 0.05  # of the number of vertices: nothing is exchanged for it
 _HASTE: Final = 0.6  # factor of the share where the error has risen
 _PATIENCE: Final = 3  # rounds that are judged together
+_CROWDED: Final = 0.5  # vertices for each pixel
 _INSERTION_PASSES: Final = 6
 
 
@@ -52,8 +54,7 @@ class Remesher:
 
     Parameters
     ----------
-    image : ndarray
-        Shape (h, w, c), uint8 or uint16.
+    image : WeightedImage
     vertices : ndarray
         Shape (n, 2), int32, in half pixels, in raster order, the corners of the picture among them.
     effort : Effort
@@ -63,18 +64,18 @@ class Remesher:
     """
 
     def __init__(
-        self, image: SampleArray, vertices: Int32Array, effort: Effort, run: Run = run_here
+        self, image: WeightedImage, vertices: Int32Array, effort: Effort, run: Run = run_here
     ) -> None:
         self._effort = effort
         self._run = run
         self._random = np.random.default_rng(0)
         # A round takes little time on a small picture, so it may gain little.
-        self._least_gain = effort.least_gain * min(1.0, image.shape[0] * image.shape[1] / 2**18)
+        self._least_gain = effort.least_gain * min(1.0, image.weights.size / 2**18)
         # Colours count as much as they can be seen: all components, alpha among them, alike.
-        self._picture = np.ascontiguousarray(premultiplied_planes(image).transpose(1, 2, 0))
-        self._weights = np.ones(image.shape[:2])
+        samples = np.ascontiguousarray(premultiplied_planes(image.samples).transpose(1, 2, 0))
+        self._picture = WeightedImage(samples, image.weights)
         self._workspace = self._make_workspace()
-        colors = sample_colors(self._picture, vertices, UNIT)
+        colors = sample_colors(samples, vertices, UNIT)
         self._surface = _open_surface(vertices.astype(np.int64), colors, delaunay(vertices), 0)
         self.n_proposed = self.n_vertices = len(vertices)
         self.error = 0.0
@@ -83,12 +84,12 @@ class Remesher:
     @property
     def peak(self) -> int:
         """The largest sample that the picture may hold."""
-        return peak_of(self._picture)
+        return peak_of(self._picture.samples)
 
     @property
     def n_samples(self) -> int:
         """Number of samples that the error is summed over."""
-        return self._picture.size
+        return self._picture.samples.size
 
     def thin(
         self,
@@ -121,6 +122,10 @@ class Remesher:
                 break
         self._compact(0)
 
+    def thin_exactly(self, n_vertices: int) -> None:
+        """Remove vertices until there are so many."""
+        self.thin(n_vertices, lambda: None)
+
     def refine(self, n_vertices: int, report: Callable[[], None]) -> None:
         """Move and flip, then exchange vertices round by round while that gains enough.
 
@@ -147,6 +152,12 @@ class Remesher:
 
     def _exchange_rounds(self, n_vertices: int, share: float, report: Callable[[], None]) -> None:
         """Exchange vertices round by round, first this share of them, while that gains enough."""
+        if n_vertices > _CROWDED * self._picture.weights.size:
+            # There is hardly a pixel left for what comes into the place of what goes.
+            if n_vertices != self.n_vertices:
+                self._exchange(n_vertices, 0.0)
+                self._settle()
+            return
         errors = []
         for _ in range(self._effort.max_rounds):
             self._exchange(n_vertices, share)
@@ -235,8 +246,7 @@ class Remesher:
         corners = surface.origin.reshape(-1, 3)
         triangles = corners[corners[:, 0] >= 0].astype(np.int32)
         surface.colors[:], _ = fit_components(
-            self._picture,
-            self._weights,
+            *self._picture,
             surface.points.astype(np.int32),
             triangles,
             UNIT,
@@ -266,7 +276,8 @@ class Remesher:
             pass
 
     def _make_workspace(self) -> Workspace:
-        return make_workspace(self._picture.shape[0], self._picture.shape[2])
+        height, _, n_components = self._picture.samples.shape
+        return make_workspace(height, n_components)
 
     def _compact(self, n_spare: int) -> None:
         """Drop what is not in use, and add capacity for some more vertices."""

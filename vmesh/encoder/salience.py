@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from vmesh.arrays import SampleArray, UInt16Array
+from vmesh.arrays import Float64Array, SampleArray, UInt16Array
 from vmesh.kernels.sobel import sobel4
 
 LEVEL: Final = 256
@@ -56,3 +56,20 @@ def compute_salience(planes: SampleArray, gamma: float = 1.0) -> UInt16Array:
             table[0] = 0
             result[:] = table[response]
     return salience
+
+
+def emphasised(salience: UInt16Array, weights: Float64Array) -> UInt16Array:
+    """Salience of a picture whose pixels do not all count alike.
+
+    Salience goes with differences and weights count squared ones, so it grows with their root.
+
+    Parameters
+    ----------
+    salience : ndarray
+        Shape (c, h, w), uint16, as :func:`compute_salience` gives it.
+    weights : ndarray
+        Shape (h, w), float64, with a mean of 1.
+    """
+    if weights.min() == weights.max():
+        return salience
+    return np.rint(np.minimum(salience * np.sqrt(weights), ONE)).astype(np.uint16)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy.typing as npt
+
 from vmesh.arrays import Float64Array, SampleArray, UInt8Array, UInt16Array
 from vmesh.codec.writer import dumps
-from vmesh.encoder.image import as_image
+from vmesh.encoder.image import weighted
 from vmesh.encoder.pipeline import encode_with
 from vmesh.encoder.proposals import propose
 from vmesh.encoder.settings import Settings
@@ -82,6 +84,7 @@ def inspect_encoding(
     photograph: SampleArray,
     settings: Settings,
     *,
+    weights: npt.ArrayLike | None = None,
     metadata: Metadata | None = None,
     limits: Limits = DEFAULT_LIMITS,
     progress: Progress | None = None,
@@ -90,14 +93,14 @@ def inspect_encoding(
 
     Parameters
     ----------
-    photograph, metadata, progress
+    photograph, weights, metadata, progress
         As for :func:`vmesh.encode`.
     settings : Settings
     limits : Limits
         Limits on the mesh and on what is drawn of it.
     """
-    salience, samples = propose(as_image(photograph), settings)
-    mesh = encode_with(photograph, settings, metadata=metadata, progress=progress)
+    salience, samples = propose(weighted(photograph, weights), settings)
+    mesh = encode_with(photograph, settings, weights=weights, metadata=metadata, progress=progress)
     limits.check_vertices(mesh.n_vertices)
     classes = samples.classes if settings.method == "blue-noise" else None
     return Inspection(photograph, salience, classes, mesh, limits)

@@ -1,8 +1,9 @@
 """Edits of a triangle mesh that bring it closer to a picture: remove, insert, move, flip.
 
 A :class:`Surface` is a triangulation of the picture's canvas with a colour at each vertex. Each of
-its triangles keeps the squared error that it leaves over the pixels whose centres it holds, so that
-what an edit gains or costs is known from the triangles it touches::
+its triangles keeps the squared error that it leaves over the pixels whose centres it holds, each
+counted as much as its weight says, so that what an edit gains or costs is known from the triangles
+it touches::
 
     remove            insert            move              flip
 
@@ -35,7 +36,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vmesh.arrays import BoolArray, Float64Array, Int64Array, UInt8Array
+from vmesh.arrays import BoolArray, Float64Array, Int64Array, SampleArray
 from vmesh.kernels import half_edges
 from vmesh.kernels.ears import clip_ears, fill_star
 from vmesh.kernels.half_edges import link, next_edge, place_triangle, previous_edge
@@ -62,6 +63,21 @@ _BIAS = 1e-7
 # A literal would be a type of its own, for which a kernel is compiled once more.
 _N_SIDES: Any = np.int64(3)
 _ROOT: Any = np.int64(0)
+
+
+class WeightedImage(NamedTuple):
+    """A picture, and what its pixels count.
+
+    Attributes
+    ----------
+    samples : ndarray
+        Shape (h, w, c), uint8 or uint16.
+    weights : ndarray
+        Shape (h, w), float64: what a squared error in each pixel counts.
+    """
+
+    samples: SampleArray
+    weights: Float64Array
 
 
 class Surface(NamedTuple):
@@ -175,7 +191,7 @@ def spans(
 
 @inner_kernel
 def triangle_error(
-    surface: Surface, image: UInt8Array, work: Workspace, a: int, b: int, c: int
+    surface: Surface, image: WeightedImage, work: Workspace, a: int, b: int, c: int
 ) -> float:
     """Squared error of a positive triangle over the pixels whose centres it holds."""
     points, colors, rows = surface.points, surface.colors, work.rows
@@ -185,10 +201,10 @@ def triangle_error(
     det = bx * cy - cx * by
     if det <= 0:
         return 0.0
-    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.shape[1], rows)
+    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.samples.shape[1], rows)
     inverse = 1.0 / float(det)
     error = 0.0
-    for z in range(image.shape[2]):
+    for z in range(image.samples.shape[2]):
         c0, c1, c2 = colors[a, z], colors[b, z] - colors[a, z], colors[c, z] - colors[a, z]
         right = (c1 * cy - c2 * by) * inverse
         down = (c2 * bx - c1 * cx) * inverse
@@ -196,31 +212,32 @@ def triangle_error(
             start = rows[y, 0]
             value = c0 + right * (2 * start + 1 - ax) + down * (2 * y + 1 - ay)
             for x in range(start, rows[y, 1]):
-                difference = value - float(image[y, x, z])
-                error += difference * difference
+                difference = value - float(image.samples[y, x, z])
+                error += image.weights[y, x] * difference * difference
                 value += 2.0 * right
     return error
 
 
 @inner_kernel
 def add_moments(
-    surface: Surface, image: UInt8Array, work: Workspace, x: int, y: int, a: int, b: int
+    surface: Surface, image: WeightedImage, work: Workspace, x: int, y: int, a: int, b: int
 ) -> None:
     """Add to ``work.sums`` what the best colour of a vertex at (x, y) follows from.
 
     In the triangle (x, y), a, b let w be the weight of the vertex at a pixel and r the pixel less
     what a and b contribute: adds the sums of r r (over all components), of w w, and of w r for
-    each component. With colour k the squared error is rr - 2 k wr + k k ww; the best is wr / ww.
+    each component, all counted as much as the pixel. With colour k the squared error is
+    rr - 2 k wr + k k ww; the best is wr / ww.
     """
     points, colors, rows, sums = surface.points, surface.colors, work.rows, work.sums
     ax, ay = points[a, 0] - x, points[a, 1] - y
     bx, by = points[b, 0] - x, points[b, 1] - y
     det = ax * by - ay * bx
-    first, last = spans(x, y, x + ax, y + ay, x + bx, y + by, image.shape[1], rows)
+    first, last = spans(x, y, x + ax, y + ay, x + bx, y + by, image.samples.shape[1], rows)
     inverse = 1.0 / float(det)
     # The weight of the vertex, and what a and b contribute, change by these with a half pixel.
     fall_right, fall_down = (ay - by) * inverse, (bx - ax) * inverse
-    for z in range(image.shape[2]):
+    for z in range(image.samples.shape[2]):
         ca, cb = colors[a, z], colors[b, z]
         right = (ca * by - cb * ay) * inverse
         down = (cb * ax - ca * bx) * inverse
@@ -231,10 +248,11 @@ def add_moments(
             weight = 1.0 + fall_right * dx + fall_down * dy
             value = right * dx + down * dy
             for column in range(start, rows[row, 1]):
-                rest = image[row, column, z] - value
-                squares += rest * rest
-                products += weight * rest
-                weights += weight * weight
+                rest = image.samples[row, column, z] - value
+                counted = image.weights[row, column] * rest
+                squares += counted * rest
+                products += weight * counted
+                weights += image.weights[row, column] * weight * weight
                 value += 2.0 * right
                 weight += 2.0 * fall_right
         sums[0] += squares
@@ -245,7 +263,13 @@ def add_moments(
 
 @inner_kernel
 def error_at(
-    surface: Surface, image: UInt8Array, work: Workspace, x: int, y: int, n_sides: int, limit: float
+    surface: Surface,
+    image: WeightedImage,
+    work: Workspace,
+    x: int,
+    y: int,
+    n_sides: int,
+    limit: float,
 ) -> float:
     """Squared error of a star with its centre at (x, y), in the best colour for it.
 
@@ -268,7 +292,7 @@ def error_at(
             work.side_sums[i, z] = sums[z]
         # The least error of some triangles is no more than that of all.
         error = sums[0]
-        for z in range(image.shape[2]):
+        for z in range(image.samples.shape[2]):
             error -= sums[2 + z] * sums[2 + z] / (sums[1] + RIDGE)
         if error > limit:
             return np.inf
@@ -284,7 +308,7 @@ def take_color(surface: Surface, work: Workspace, v: int) -> None:
 
 
 @kernel
-def measure(surface: Surface, image: UInt8Array, work: Workspace, first: int, last: int) -> None:
+def measure(surface: Surface, image: WeightedImage, work: Workspace, first: int, last: int) -> None:
     """Recompute the errors of the triangles from `first` up to `last`, which is excluded."""
     for t in range(first, last):
         a, b, c = surface.origin[3 * t], surface.origin[3 * t + 1], surface.origin[3 * t + 2]
@@ -296,7 +320,7 @@ def measure(surface: Surface, image: UInt8Array, work: Workspace, first: int, la
 
 @inner_kernel
 def set_triangle(
-    surface: Surface, image: UInt8Array, work: Workspace, t: int, a: int, b: int, c: int
+    surface: Surface, image: WeightedImage, work: Workspace, t: int, a: int, b: int, c: int
 ) -> None:
     """Make t the triangle a, b, c."""
     place_triangle(surface.origin, surface.leaving, t, a, b, c)
@@ -305,7 +329,7 @@ def set_triangle(
 
 @inner_kernel
 def update_triangle(
-    surface: Surface, image: UInt8Array, work: Workspace, t: int, a: int, b: int, c: int
+    surface: Surface, image: WeightedImage, work: Workspace, t: int, a: int, b: int, c: int
 ) -> None:
     """Measure triangle t, which became a, b, c, and mark its corners as dirty."""
     surface.dirty[a] = surface.dirty[b] = surface.dirty[c] = True
@@ -344,7 +368,7 @@ def collect_ring(surface: Surface, work: Workspace, v: int) -> tuple[int, int]:
 
 
 @inner_kernel
-def removal_cost(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> float:
+def removal_cost(surface: Surface, image: WeightedImage, work: Workspace, v: int) -> float:
     """Squared error that the removal of a vertex would add.
 
     It is infinite for a corner of the canvas and where the hole cannot be filled.
@@ -368,7 +392,7 @@ def removal_cost(surface: Surface, image: UInt8Array, work: Workspace, v: int) -
 
 
 @inner_kernel
-def remove(surface: Surface, image: UInt8Array, work: Workspace, v: int) -> int:
+def remove(surface: Surface, image: WeightedImage, work: Workspace, v: int) -> int:
     """Remove a vertex and fill the hole; returns the number of its neighbours, in ``work.ring``."""
     points, origin, twin, leaving = surface.points, surface.origin, surface.twin, surface.leaving
     ring, star, ears = work.ring, work.star, work.ears
@@ -410,7 +434,12 @@ def sift(heap: Int64Array, place: Int64Array, costs: Float64Array, size: int, at
 
 @kernel
 def weigh(
-    surface: Surface, image: UInt8Array, work: Workspace, first: int, last: int, costs: Float64Array
+    surface: Surface,
+    image: WeightedImage,
+    work: Workspace,
+    first: int,
+    last: int,
+    costs: Float64Array,
 ) -> None:
     """Costs of removing the vertices from `first` up to `last`, which is excluded."""
     for v in range(first, last):
@@ -422,7 +451,7 @@ def weigh(
 @kernel
 def thin(
     surface: Surface,
-    image: UInt8Array,
+    image: WeightedImage,
     work: Workspace,
     costs: Float64Array,
     factors: Float64Array,
@@ -438,8 +467,7 @@ def thin(
     ----------
     surface : Surface
         With errors that are up to date.
-    image : ndarray
-        Shape (h, w, c), uint8.
+    image : WeightedImage
     work : Workspace
     costs : ndarray
         Shape (n,), float64: as :func:`weigh` finds them; changed.
@@ -487,14 +515,14 @@ def thin(
 
 @inner_kernel
 def worst_pixel(
-    surface: Surface, image: UInt8Array, work: Workspace, a: int, b: int, c: int
+    surface: Surface, image: WeightedImage, work: Workspace, a: int, b: int, c: int
 ) -> tuple[int, int]:
     """Centre of the pixel of a triangle with the largest error; its first corner if it has none."""
     points, colors, rows = surface.points, surface.colors, work.rows
     ax, ay = points[a, 0], points[a, 1]
     bx, by = points[b, 0] - ax, points[b, 1] - ay
     cx, cy = points[c, 0] - ax, points[c, 1] - ay
-    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.shape[1], rows)
+    first, last = spans(ax, ay, ax + bx, ay + by, ax + cx, ay + cy, image.samples.shape[1], rows)
     inverse = 1.0 / float(bx * cy - cx * by)
     worst, worst_x, worst_y = 0.0, ax, ay
     for row in range(first, last):
@@ -505,10 +533,11 @@ def worst_pixel(
             if min(weight_b, weight_c, 1.0 - weight_b - weight_c) < 1e-9:
                 continue
             error = 0.0
-            for z in range(image.shape[2]):
+            for z in range(image.samples.shape[2]):
                 value = colors[a, z] + weight_b * (colors[b, z] - colors[a, z])
                 value += weight_c * (colors[c, z] - colors[a, z])
-                error += (value - image[row, column, z]) ** 2
+                error += (value - image.samples[row, column, z]) ** 2
+            error *= image.weights[row, column]
             if error >= worst:
                 worst, worst_x, worst_y = error, 2 * column + 1, 2 * row + 1
     return worst_x, worst_y
@@ -516,7 +545,7 @@ def worst_pixel(
 
 @inner_kernel
 def best_insertion(
-    surface: Surface, image: UInt8Array, work: Workspace, t: int
+    surface: Surface, image: WeightedImage, work: Workspace, t: int
 ) -> tuple[float, int, int]:
     """Gain of a new vertex in triangle t, and its place: the middle or the worst pixel."""
     points, errors, ring = surface.points, surface.errors, work.ring
@@ -538,7 +567,13 @@ def best_insertion(
 
 @inner_kernel
 def split(
-    surface: Surface, image: UInt8Array, work: Workspace, t: int, v: int, second: int, third: int
+    surface: Surface,
+    image: WeightedImage,
+    work: Workspace,
+    t: int,
+    v: int,
+    second: int,
+    third: int,
 ) -> None:
     """Split triangle t at vertex v; `second` and `third` are triangles that are not in use."""
     origin, twin = surface.origin, surface.twin
@@ -557,7 +592,7 @@ def split(
 @kernel
 def propose_insertions(
     surface: Surface,
-    image: UInt8Array,
+    image: WeightedImage,
     work: Workspace,
     first: int,
     last: int,
@@ -569,8 +604,7 @@ def propose_insertions(
     Parameters
     ----------
     surface : Surface
-    image : ndarray
-        Shape (h, w, c), uint8.
+    image : WeightedImage
     work : Workspace
     first, last : int
         The triangles: `last` is excluded.
@@ -589,7 +623,7 @@ def propose_insertions(
 @kernel
 def insert(
     surface: Surface,
-    image: UInt8Array,
+    image: WeightedImage,
     work: Workspace,
     order: Int64Array,
     gains: Float64Array,
@@ -603,8 +637,7 @@ def insert(
     Parameters
     ----------
     surface : Surface
-    image : ndarray
-        Shape (h, w, c), uint8.
+    image : WeightedImage
     work : Workspace
     order : ndarray
         Shape (k,), int64: triangles in use, the best first.
@@ -660,7 +693,7 @@ def may_step(x: int, dx: int, far: int) -> bool:
 
 @inner_kernel
 def predict_step(
-    surface: Surface, image: UInt8Array, work: Workspace, v: int, n_sides: int
+    surface: Surface, image: WeightedImage, work: Workspace, v: int, n_sides: int
 ) -> None:
     """Predict the change of the error of vertex v's star for each step, in ``work.predictions``.
 
@@ -701,7 +734,7 @@ def predict_step(
         h_xx -= mean_x * mean_x * share
         h_xy -= mean_x * mean_y * share
         h_yy -= mean_y * mean_y * share
-    width, height = 2 * image.shape[1], 2 * image.shape[0]
+    width, height = 2 * image.samples.shape[1], 2 * image.samples.shape[0]
     x, y = points[v, 0], points[v, 1]
     for i in range(work.predictions.shape[0]):
         dy = 2 * (i - REACH)
@@ -717,7 +750,7 @@ def predict_step(
 
 @inner_kernel
 def step(
-    surface: Surface, image: UInt8Array, work: Workspace, v: int, n_sides: int, least: float
+    surface: Surface, image: WeightedImage, work: Workspace, v: int, n_sides: int, least: float
 ) -> float:
     """Error after vertex v was moved to a better one of the places that are predicted to be best.
 
@@ -745,7 +778,7 @@ def step(
 
 
 @kernel
-def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int64Array) -> int:
+def relocate(surface: Surface, image: WeightedImage, work: Workspace, vertices: Int64Array) -> int:
     """Move the dirty ones of some vertices to better places, step by step; returns how many moved.
 
     The error of a place is that of the star in the best colour for it. Vertices on the border stay
@@ -754,7 +787,7 @@ def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int
     time.
     """
     points, leaving, dirty = surface.points, surface.leaving, surface.dirty
-    right, bottom = 2 * image.shape[1], 2 * image.shape[0]
+    right, bottom = 2 * image.samples.shape[1], 2 * image.samples.shape[0]
     moved = 0
     for v in vertices:
         if leaving[v] < 0 or not dirty[v]:
@@ -786,7 +819,7 @@ def relocate(surface: Surface, image: UInt8Array, work: Workspace, vertices: Int
 
 
 @kernel
-def flip_edges(surface: Surface, image: UInt8Array, work: Workspace, charge: float) -> int:
+def flip_edges(surface: Surface, image: WeightedImage, work: Workspace, charge: float) -> int:
     """Flip each edge at most once, if that lowers the error; returns how many were flipped.
 
     An edge that is not Delaunay is charged what it costs to code it.

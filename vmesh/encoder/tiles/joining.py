@@ -32,11 +32,11 @@ from vmesh.mesh.canonical_order import raster_keys, sorted_triangles
 # there where an edge of the picture crosses the line. kodim05, 15 and 23 in tiles of 256 pixels
 # have 23.26, 31.45 and 34.77 dB with 1, 23.24, 31.39 and 34.76 with 3 (4,000 vertices); 26.98,
 # 34.46 and 38.83 with 1, 26.99, 34.35 and 38.67 with 3 (12,000).
-_NEAR: Final = 3
+NEAR: Final = 3
 
 
 def join(
-    grid: Grid, geometries: Sequence[tuple[Int32Array, Int32Array]]
+    grid: Grid, geometries: Sequence[tuple[Int32Array, Int32Array]], near: int = NEAR
 ) -> tuple[Int32Array, Int32Array]:
     """Vertices, (n, 2), and triangles, (m, 3), int32, of a whole picture in canonical order.
 
@@ -46,13 +46,15 @@ def join(
     geometries : sequence of (ndarray, ndarray)
         Vertices, shape (k, 2), int32, in lattice units from the tile's corner, and triangles of
         each tile, which cover it.
+    near : int
+        Vertices at most so many half pixels from a line between tiles are put on it.
     """
     places, faces, n_vertices = [], [], 0
     for tile, (vertices, triangles) in zip(grid.tiles(), geometries, strict=True):
         places.append(vertices + np.array([tile.x, tile.y], dtype=np.int32) * UNIT)
         faces.append(triangles.astype(np.int64) + n_vertices)
         n_vertices += len(vertices)
-    points, corners = _put_on_lines(np.concatenate(places), np.concatenate(faces), grid)
+    points, corners = _put_on_lines(np.concatenate(places), np.concatenate(faces), grid, near)
     _, first, rank = np.unique(raster_keys(points), return_index=True, return_inverse=True)
     points, corners = points[first], rank[corners]
     for axis in (0, 1):
@@ -61,7 +63,7 @@ def join(
 
 
 def _put_on_lines(
-    points: Int32Array, triangles: Int64Array, grid: Grid
+    points: Int32Array, triangles: Int64Array, grid: Grid, near: int
 ) -> tuple[Int32Array, Int64Array]:
     """Move vertices that are close to a line between tiles onto it; drop what then vanishes.
 
@@ -71,7 +73,7 @@ def _put_on_lines(
     lines = np.rint(points / (grid.side * UNIT)).astype(np.int32) * (grid.side * UNIT)
     # The border of the canvas stays where it is, also where the last tiles are a pixel wide.
     is_free = (lines > 0) & (lines < far) & (points < far)
-    moves = (np.abs(points - lines) <= _NEAR) & is_free
+    moves = (np.abs(points - lines) <= near) & is_free
     while True:
         moved = np.where(moves, lines, points)
         areas = doubled_areas(moved, triangles)

@@ -10,13 +10,13 @@ from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 
-from vmesh.arrays import Int32Array, SampleArray
-from vmesh.encoder.draft import Draft, SampledDraft
+from vmesh.arrays import Int32Array
+from vmesh.encoder.draft import Draft
 from vmesh.encoder.rate_model import ERROR_POWER, SAMPLED_POWER, lambda_of
 from vmesh.encoder.remeshing import Remesher
 from vmesh.encoder.threads import Run
-from vmesh.encoder.tiles.joining import join
-from vmesh.grid import Grid, Tile
+from vmesh.encoder.tiles.joining import NEAR, join
+from vmesh.grid import Grid
 
 Part = TypeVar("Part", bound=Draft)
 
@@ -32,8 +32,11 @@ _CAUTION: Final = 4.0
 _NEAR: Final = 1.1
 _MAX_THINNINGS: Final = 8
 _SMALL_CHANGE: Final = 0.05  # of the vertices of a tile
+# Where the tiles have more vertices for each pixel than this, they are left beside the lines: there
+# is no sliver that is much smaller than the other triangles.
+_DENSE: Final = 0.5
 # How often the tiles' numbers are corrected for the vertices that they share.
-_MAX_CORRECTIONS: Final = 8
+_MAX_CORRECTIONS: Final = 16
 REPORTS: Final = 6
 """Number of progress reports, at most, while something is done to all tiles."""
 
@@ -48,10 +51,13 @@ class TiledDraft(Generic[Part]):
         Drafts of the tiles, in the order of the grid.
     run : callable
         Runs the jobs, of which each has tiles of its own.
+    near : int
+        As for :func:`join`.
     """
 
-    def __init__(self, grid: Grid, parts: Sequence[Part], run: Run) -> None:
+    def __init__(self, grid: Grid, parts: Sequence[Part], run: Run, near: int = NEAR) -> None:
         self._grid = grid
+        self._near = near
         self._parts = list(parts)
         self._run = run
         self._joined: tuple[Int32Array, Int32Array] | None = None
@@ -82,7 +88,9 @@ class TiledDraft(Generic[Part]):
     def geometry(self) -> tuple[Int32Array, Int32Array]:
         """Vertices, (n, 2), and triangles, (m, 3), int32, in canonical order."""
         if self._joined is None:
-            self._joined = join(self._grid, [part.geometry() for part in self._parts])
+            is_dense = self._n_apart > _DENSE * self._grid.width * self._grid.height
+            near = 0 if is_dense else self._near
+            self._joined = join(self._grid, [part.geometry() for part in self._parts], near)
         return self._joined
 
     @property
@@ -114,7 +122,7 @@ class TiledDraft(Generic[Part]):
         self._joined = None
 
 
-class TiledSamples(TiledDraft[SampledDraft]):
+class TiledSamples(TiledDraft[Draft]):
     """A draft of vertices where they were sampled, tile by tile."""
 
     def balance(self) -> None:
@@ -174,6 +182,17 @@ class TiledRemesher(TiledDraft[Remesher]):
         jobs = list(zip(self._parts, super()._numbers(n_vertices), strict=True))
         self._do(lambda job: job[0].refine(job[1], _say_nothing), jobs, report)
 
+    def thin_exactly(self, n_vertices: int) -> None:
+        """Remove vertices until the joined mesh has so many, from each tile its share.
+
+        None but the corners of the tiles may lie on the lines between them.
+        """
+        inner = [number - _CORNERS for number in self._counts]
+        n_corners = self.n_vertices - sum(inner)
+        left = _proportional(inner, max(0, n_vertices - n_corners))
+        jobs = list(zip(self._parts, left, strict=True))
+        self._do(lambda job: job[0].thin(_CORNERS + job[1], _say_nothing), jobs, _say_nothing)
+
     def _numbers(self, n_vertices: int) -> list[int]:
         """Numbers of vertices for the tiles: one alone makes up for a small difference."""
         numbers = self._counts
@@ -204,23 +223,23 @@ class TiledRemesher(TiledDraft[Remesher]):
         self._do(thin, self._parts, report)
 
 
-def crop(image: SampleArray, tile: Tile) -> SampleArray:
-    """The part of a picture, shape (h, w, c), that lies in a tile."""
-    x, y, width, height = tile
-    return np.ascontiguousarray(image[y : y + height, x : x + width])
-
-
 def apportion(weights: Sequence[float], total: int) -> list[int]:
     """Numbers of vertices in proportion to weights, by the method of largest remainders.
 
     They add up to the total unless a tile has to be given the vertices of its corners.
     """
+    return [max(_CORNERS, number) for number in _proportional(weights, total)]
+
+
+def _proportional(weights: Sequence[float], total: int) -> list[int]:
+    """Whole numbers in proportion to weights that add up to a total."""
     exact = np.asarray(weights) * (total / max(sum(weights), _NO_ERROR))
     whole = np.floor(exact).astype(np.int64)
     # The rest of the total goes to the numbers that lost most by rounding.
     order = np.argsort(whole - exact, kind="stable")
     whole[order[: max(0, total - int(whole.sum()))]] += 1
-    return [max(_CORNERS, number) for number in whole.tolist()]
+    result: list[int] = whole.tolist()
+    return result
 
 
 def _say_nothing() -> None:
