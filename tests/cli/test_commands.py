@@ -405,7 +405,7 @@ def test_what_is_not_an_image_is_told(garbage: Path, tmp_path: Path) -> None:
 def test_a_truncated_image_is_told(tmp_path: Path) -> None:
     path = tmp_path / "half.png"
     path.write_bytes(COFFEE.read_bytes()[:100_000])
-    assert "damaged" in fail(1, "encode", path, tmp_path / "out.vmesh")
+    assert "cut off" in fail(1, "encode", path, tmp_path / "out.vmesh")
 
 
 def test_an_empty_file_is_told(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def test_a_photograph_that_fails_is_left_out_and_told(photograph: Path, tmp_path
     broken, page = tmp_path / "broken.png", tmp_path / "page.html"
     broken.write_bytes(photograph.read_bytes()[:60])
     text = fail(1, "report", broken, photograph, "-o", page, *FAST)
-    assert text.startswith(f"vmesh: {broken}: the image is damaged")
+    assert text.startswith(f"vmesh: {broken}: the file is cut off")
     assert page.read_text("utf-8").count("<section>") == 1
 
 

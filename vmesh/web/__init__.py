@@ -4,7 +4,7 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import Final
 
-WEB: Final[Traversable] = files("vmesh.web")
+WEB: Final[Traversable] = files(__name__)
 
 
 def built_script(name: str) -> str:
