@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from vmesh.cli.main import main
+from vmesh.kernels.jit import take_trouble
 
 
 def run(*arguments: str | Path, given: bytes = b"") -> subprocess.CompletedProcess[bytes]:
@@ -48,6 +49,7 @@ class Program:
         """Status, and what is written to standard output and standard error."""
         self._monkeypatch.setattr(sys, "argv", ["vmesh", *map(str, arguments)])
         self._capfd.readouterr()
+        take_trouble()  # of what this process did before
         try:
             main()
             status = 0
@@ -59,7 +61,7 @@ class Program:
     def succeed(self, *arguments: str | Path) -> str:
         """What is written to standard output when the work is done in silence."""
         status, output, told = self.run(*arguments)
-        assert (status, told) == (0, "")
+        assert (status, told) == (0, ""), told
         return output
 
     def fail(self, status: int, *arguments: str | Path) -> str:

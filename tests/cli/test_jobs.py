@@ -6,6 +6,7 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -313,3 +314,38 @@ def test_outputs_keep_the_times_of_their_inputs_if_asked_to(
     program.succeed("to-svg", mesh)
     assert mesh.with_suffix(".svg").stat().st_mtime_ns > times[1]
     assert "--preserve" in program.fail(2, "to-svg", mesh, "-", "--preserve")
+
+
+@pytest.mark.parametrize("target", ["out.vmesh", "out.svg", "out.pdf", "out.html", "out.ply"])
+def test_what_a_mask_shows_white_is_closer_to_the_photograph(
+    program: Program, tmp_path: Path, target: str
+) -> None:
+    pixels = np.random.default_rng(7).integers(0, 256, (24, 32, 3), dtype=np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "photo.png")
+    mask = np.zeros((6, 4), dtype=np.uint8)
+    mask[:, 2:] = 255
+    Image.fromarray(mask).save(tmp_path / "mask.png")
+    command = {".svg": "to-svg", ".pdf": "to-pdf", ".html": "to-html", ".ply": "export"}
+    outputs = []
+    for options in ((), ("--mask", tmp_path / "mask.png")):
+        arguments = (tmp_path / "photo.png", tmp_path / target, "--vertices", "200", "-e", "2")
+        program.succeed(command.get(Path(target).suffix, "encode"), *arguments, *options)
+        outputs.append((tmp_path / target).read_bytes())
+    assert outputs[0] != outputs[1]
+    if target == "out.vmesh":
+        errors = [
+            np.square(vmesh.render(vmesh.loads(data))[:, 16:].astype(float) - pixels[:, 16:]).mean()
+            for data in outputs
+        ]
+        assert errors[1] < 0.8 * errors[0]
+
+
+def test_a_mask_that_cannot_be_used_is_told_by_its_name(program: Program, tmp_path: Path) -> None:
+    Image.new("RGB", (8, 8), "red").save(tmp_path / "photo.png")
+    Image.new("L", (8, 8)).save(tmp_path / "black.png")
+    (tmp_path / "text.png").write_text("no picture")
+    for mask, words in (("black.png", "black all over"), ("text.png", "not an image")):
+        told = program.fail(1, "encode", tmp_path / "photo.png", "--mask", tmp_path / mask)
+        assert mask in told
+        assert words in told
+    assert not (tmp_path / "photo.vmesh").exists()

@@ -25,7 +25,7 @@ from vmesh.cli.options import (
     picture_options,
     quiet_option,
     strip_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.progress import show_files
@@ -132,7 +132,7 @@ def command(
     """
     options["threads"] = 1
     recipe = Recipe(
-        take_settings(options), take_picture_options(options), strip, take_limits(options)
+        take_settings(options), take_reading(options).options, strip, take_limits(options)
     )
     if STANDARD in sources:
         raise click.UsageError("batch reads files, not standard input")

@@ -11,13 +11,12 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     json_option,
     picture_options,
-    take_picture_options,
+    take_reading,
 )
-from vmesh.cli.streams import read_mesh_or_photograph, tell
+from vmesh.cli.streams import Reading, read_mesh_or_photograph, tell
 
 if TYPE_CHECKING:
     from vmesh.arrays import UInt8Array
-    from vmesh.formats.picture.options import PictureOptions
     from vmesh.limits import Limits
 
 
@@ -34,7 +33,7 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
     B is brought to the size of A: a mesh by drawing it at that size, a picture by bicubic
     resampling. What is transparent counts as white.
     """
-    reading, limits = take_picture_options(options), take_limits(options)
+    reading, limits = take_reading(options), take_limits(options)
     from vmesh.metrics import compare
 
     reference = _pixels(first, reading, limits, None)
@@ -51,7 +50,7 @@ def command(first: str, second: str, as_json: bool, **options: Any) -> None:
 
 
 def _pixels(
-    path: str, reading: PictureOptions, limits: Limits, size: tuple[int, int] | None
+    path: str, reading: Reading, limits: Limits, size: tuple[int, int] | None
 ) -> UInt8Array:
     """Pixels of a picture or mesh in sRGB, shape (h, w, 3), at a size or at its own."""
     from vmesh.formats.color.conversion import to_srgb

@@ -14,20 +14,20 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
     json_option,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, read_photograph, tell
+from vmesh.cli.streams import STANDARD, Reading, read_photograph, tell
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.metadata.privacy import Strip
 
 if TYPE_CHECKING:
     from vmesh.encoder.settings import Settings
-    from vmesh.formats.picture.options import PictureOptions
     from vmesh.limits import Limits
 
 
@@ -37,6 +37,7 @@ _MAKING: Final = Making(PICTURES, (FILE_SUFFIX,), FILE_SUFFIX)
 @click.command("encode")
 @job_arguments("INPUT", "OUTPUT.vmesh")
 @picture_options
+@mask_option
 @strip_option("none")
 @encoder_options
 @limit_options
@@ -50,7 +51,7 @@ def command(strip: Strip | None, as_json: bool, quiet: bool, **options: Any) -> 
     at once.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading, jobs = take_picture_options(options), take_jobs(options, _MAKING)
+    reading, jobs = take_reading(options), take_jobs(options, _MAKING)
     if as_json and any(job.target == STANDARD for job in jobs.jobs):
         raise click.UsageError("--json and the file cannot both go to standard output")
 
@@ -65,7 +66,7 @@ def command(strip: Strip | None, as_json: bool, quiet: bool, **options: Any) -> 
 def encode(
     job: Job,
     settings: Settings,
-    reading: PictureOptions,
+    reading: Reading,
     limits: Limits,
     strip: Strip | None,
     *,
@@ -81,7 +82,9 @@ def encode(
         report("reading")
         picture = read_photograph(job.source, reading, limits)
         metadata = stripped(picture.metadata, strip or "none")
-        mesh = encode_with(picture.array, settings, metadata=metadata, progress=report)
+        mesh = encode_with(
+            picture.array, settings, weights=picture.weights, metadata=metadata, progress=report
+        )
         limits.check_vertices(mesh.n_vertices)
         report("writing")
         data = dumps(mesh)

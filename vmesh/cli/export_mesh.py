@@ -11,9 +11,10 @@ from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.streams import STANDARD
@@ -27,6 +28,7 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, MESH_SUFFIXES)
 @job_arguments("INPUT", "OUTPUT", has_folder=False)
 @click.option("--ascii", is_flag=True, help="PLY as text instead of binary.")
 @picture_options
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
@@ -38,7 +40,7 @@ def command(ascii: bool, quiet: bool, **options: Any) -> None:
     text, to the last level. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
+    reading = take_reading(options)
     jobs = take_jobs(options, _MAKING)
     target = jobs.jobs[0].target
     if target == STANDARD:

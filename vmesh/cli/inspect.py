@@ -13,9 +13,10 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.progress import show_progress
@@ -58,6 +59,7 @@ def _region_of(text: str) -> Region:
     help="Pixels of a drawing for each of the picture; unless given, what suits a screen.",
 )
 @picture_options
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
@@ -74,7 +76,7 @@ def command(
     """
     region = None if zoom is None else _region_of(zoom)
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
+    reading = take_reading(options)
     jobs = take_jobs(options, _MAKING)
     from vmesh.encoder.pipeline import count_steps
     from vmesh.inspection.sheet.files import write_sheet
@@ -89,7 +91,12 @@ def command(
             if region is not None:
                 region.check_within(picture.array.shape[1], picture.array.shape[0])
             found = inspect_encoding(
-                picture.array, settings, metadata=picture.metadata, limits=limits, progress=report
+                picture.array,
+                settings,
+                weights=picture.weights,
+                metadata=picture.metadata,
+                limits=limits,
+                progress=report,
             )
             report("drawing")
             if show == "sheet":

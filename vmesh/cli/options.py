@@ -8,6 +8,7 @@ from typing import Any, TypeVar, get_args
 
 import click
 
+from vmesh.cli.streams import Reading
 from vmesh.encoder.settings import (
     DEFAULT_EFFORT,
     DEFAULT_QUALITY,
@@ -167,9 +168,18 @@ def picture_options(command: Command) -> Command:
     return command
 
 
-def take_picture_options(options: dict[str, Any]) -> PictureOptions:
-    """Options of reading photographs among a command's options, which lose them."""
-    return PictureOptions(**{item.name: options.pop(item.name) for item in fields(PictureOptions)})
+def take_reading(options: dict[str, Any]) -> Reading:
+    """Choices about reading photographs among a command's options, which lose them."""
+    chosen = {item.name: options.pop(item.name) for item in fields(PictureOptions)}
+    return Reading(PictureOptions(**chosen), options.pop("mask", None))
+
+
+mask_option = click.option(
+    "--mask",
+    metavar="PICTURE",
+    help="Picture of any size, stretched over each photograph: the whiter, the more a place "
+    "matters.",
+)
 
 
 def strip_option(default: str) -> Callable[[Command], Command]:

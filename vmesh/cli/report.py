@@ -15,17 +15,16 @@ from vmesh.cli.options import (
     encoder_options,
     picture_options,
     quiet_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, check_suffix, read_photograph
+from vmesh.cli.streams import STANDARD, Reading, check_suffix, read_photograph
 from vmesh.errors import describe
 from vmesh.progress import Progress
 
 if TYPE_CHECKING:
     from vmesh.encoder.settings import Settings
-    from vmesh.formats.picture.options import PictureOptions
     from vmesh.limits import Limits
 
 
@@ -53,7 +52,7 @@ def command(
     A photograph that fails is left out and told at the end, and the status is 1.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
+    reading = take_reading(options)
     check_suffix(target, (".html", ".htm"))
     if target != STANDARD:
         check_targets([(sources[0], [target]), *((source, ()) for source in sources[1:])])
@@ -83,7 +82,7 @@ def make_section(
     source: str,
     number: int,
     settings: Settings,
-    reading: PictureOptions,
+    reading: Reading,
     limits: Limits,
     report: Progress,
 ) -> str:

@@ -9,6 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
@@ -19,12 +20,30 @@ from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import Times, atomic_output
 
 if TYPE_CHECKING:
+    from vmesh.arrays import Float64Array
     from vmesh.formats.picture.options import PictureOptions
     from vmesh.formats.picture.picture import Picture
     from vmesh.limits import Limits
     from vmesh.mesh import Mesh
 
 STANDARD = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """Choices of a user about reading photographs.
+
+    Parameters
+    ----------
+    options : PictureOptions
+    mask : str, optional
+        Path of the picture that says which parts of a photograph matter more.
+    """
+
+    options: PictureOptions
+    mask: str | None = None
+
+
 STANDARD_OUTPUT: Final = "standard output"
 
 
@@ -113,20 +132,20 @@ def read_mesh(path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh
     return mesh
 
 
-def read_photograph(path: str, options: PictureOptions, limits: Limits) -> Picture:
+def read_photograph(path: str, reading: Reading, limits: Limits) -> Picture:
     """The photograph in an image file; its notes are told on standard error."""
     data = read_input(path)
     if is_vmesh(data):
         raise ImageError(f"{shown(path)}: this is a .vmesh file, a photograph is needed")
-    return _photograph_of(data, path, options, limits)
+    return _photograph_of(data, path, reading, limits)
 
 
-def read_mesh_or_photograph(path: str, options: PictureOptions, limits: Limits) -> Mesh | Picture:
+def read_mesh_or_photograph(path: str, reading: Reading, limits: Limits) -> Mesh | Picture:
     """Mesh or photograph in a file, by its content; a name that ends in .vmesh promises a mesh."""
     data = read_input(path)
     if is_vmesh(data) or Path(path).suffix.lower() == FILE_SUFFIX:
         return _mesh_of(data, path, limits)
-    return _photograph_of(data, path, options, limits)
+    return _photograph_of(data, path, reading, limits)
 
 
 def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:
@@ -140,15 +159,28 @@ def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = Fa
         raise LimitError(f"{shown(path)}: {error}") from None
 
 
-def _photograph_of(data: bytes, path: str, options: PictureOptions, limits: Limits) -> Picture:
+def _photograph_of(data: bytes, path: str, reading: Reading, limits: Limits) -> Picture:
     from vmesh.formats.picture.picture import read_picture
 
     if not data:
         raise ImageError(f"{shown(path)}: the file is empty")
     try:
-        picture = read_picture(io.BytesIO(data), options=options, limits=limits)
+        picture = read_picture(io.BytesIO(data), options=reading.options, limits=limits)
     except (ImageError, LimitError) as error:
         raise type(error)(f"{shown(path)}: {error}") from None
     for note in picture.notes:
         remark(f"{path}: {note}")
-    return picture
+    if reading.mask is None:
+        return picture
+    return replace(picture, weights=_mask_over(picture, reading.mask, limits))
+
+
+def _mask_over(picture: Picture, path: str, limits: Limits) -> Float64Array:
+    """Weights of a photograph's pixels, by the mask in a file."""
+    from vmesh.formats.picture.mask import read_mask
+
+    height, width = picture.array.shape[:2]
+    try:
+        return read_mask(io.BytesIO(read_input(path)), width, height, limits=limits)
+    except (ImageError, LimitError) as error:
+        raise type(error)(f"{shown(path)}: {error}") from None

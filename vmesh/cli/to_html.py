@@ -11,10 +11,11 @@ from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.streams import check_suffix
@@ -33,6 +34,7 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".html", ".htm"), ".html")
     help="Write the script of <vmesh-image src=...> for pages of your own; it needs no INPUT.",
 )
 @picture_options
+@mask_option
 @strip_option("private")
 @encoder_options
 @limit_options
@@ -49,7 +51,7 @@ def command(
     many INPUTs, also folders. The options of the encoder apply to photographs.
     """
     settings, limits = take_settings(options), take_limits(options)
-    reading = take_picture_options(options)
+    reading = take_reading(options)
     if element is not None:
         write_element(element, options["overwrite"])
         if not options["paths"] and options["output"] is None:

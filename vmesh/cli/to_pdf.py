@@ -13,10 +13,11 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.progress import show_progress
@@ -70,6 +71,7 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".pdf",), ".pdf")
     help="What writes the page; cairo writes 30 times as much.",
 )
 @picture_options
+@mask_option
 @strip_option("private")
 @encoder_options
 @limit_options
@@ -96,7 +98,7 @@ def command(
     except ValueError as error:
         raise click.UsageError(str(error)) from None
     settings, limits = take_settings(options), take_limits(options)
-    reading, album = take_picture_options(options), take_album(options, _MAKING)
+    reading, album = take_reading(options), take_album(options, _MAKING)
     jobs = take_jobs(options, _MAKING) if album is None else None
 
     def work(job: Job) -> None:

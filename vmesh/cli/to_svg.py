@@ -12,10 +12,11 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
-    take_picture_options,
+    take_reading,
     take_settings,
 )
 from vmesh.cli.streams import STANDARD, read_photograph
@@ -90,6 +91,7 @@ _MAKING_OF_URIS: Final = Making(PICTURES_AND_MESHES, (".txt",), ".txt")
     help="Write text for src=\"...\" or url('...'), in either quotes, to OUTPUT.txt or to -.",
 )
 @picture_options
+@mask_option
 @strip_option("private")
 @encoder_options
 @limit_options
@@ -115,7 +117,7 @@ def command(
     """
     settings, limits = take_settings(options), take_limits(options)
     making = _MAKING_OF_URIS if data_uri else _MAKING
-    reading, jobs = take_picture_options(options), take_jobs(options, making)
+    reading, jobs = take_reading(options), take_jobs(options, making)
     try:
         n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Unpack
 
 from vmesh.cli.jobs import Job
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import read_mesh_or_photograph
+from vmesh.cli.streams import Reading, read_mesh_or_photograph
 from vmesh.encoder.settings import Settings
-from vmesh.formats.picture.options import PictureOptions
 from vmesh.formats.registry import ExportOptions, Format, write_mesh
 from vmesh.limits import Limits
 
@@ -22,7 +21,7 @@ def convert(
     job: Job,
     wanted: Format,
     settings: Settings,
-    reading: PictureOptions,
+    reading: Reading,
     limits: Limits,
     *,
     quiet: bool,
@@ -59,4 +58,6 @@ def mesh_of(given: Mesh | Picture, settings: Settings, report: Progress) -> Mesh
 
     if isinstance(given, Mesh):
         return given
-    return encode_with(given.array, settings, metadata=given.metadata, progress=report)
+    return encode_with(
+        given.array, settings, weights=given.weights, metadata=given.metadata, progress=report
+    )

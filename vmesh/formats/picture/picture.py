@@ -9,7 +9,7 @@ from typing import BinaryIO, Final
 import numpy as np
 from PIL import Image, ImageOps
 
-from vmesh.arrays import SampleArray
+from vmesh.arrays import Float64Array, SampleArray
 from vmesh.errors import ImageError, LimitError
 from vmesh.formats.color.images import interpret_image
 from vmesh.formats.metadata.exif import (
@@ -43,11 +43,14 @@ class Picture:
         ICC profile, EXIF without its orientation, XMP.
     notes : tuple of str
         Sentences for the user about what was left out, or had to be guessed.
+    weights : ndarray, optional
+        Shape (h, w), float64: what an error in each pixel counts, where a mask says so.
     """
 
     array: SampleArray
     metadata: Metadata
     notes: tuple[str, ...] = ()
+    weights: Float64Array | None = None
 
 
 def read_picture(
