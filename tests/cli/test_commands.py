@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -99,6 +100,89 @@ def test_a_size_that_no_mesh_fits_in_is_told_in_one_sentence(tmp_path: Path) -> 
     text = fail(1, "encode", CHELSEA, target, "--target-size", "20", "-e", "1")
     assert "smallest file" in text
     assert not target.exists()
+
+
+def test_a_size_that_metadata_alone_exceed_is_told_with_their_share(tmp_path: Path) -> None:
+    photograph = Image.fromarray(np.asarray(Image.open(CHELSEA).convert("RGB"))[:64, :96])
+    exif = Image.Exif()
+    random = np.random.default_rng(1)
+    exif[0x010E] = "".join(map(chr, random.integers(33, 123, 3000)))
+    photograph.save(tmp_path / "in.jpg", exif=exif)
+    sizes = "--target-size", "800", "-e", "1"
+    text = fail(1, "encode", tmp_path / "in.jpg", tmp_path / "out.vmesh", *sizes)
+    found = re.search(r"takes (\d+) bytes, (\d+) of them metadata \(--strip leaves", text)
+    assert found is not None
+    assert 800 < int(found[2]) < int(found[1])
+    succeed("encode", tmp_path / "in.jpg", tmp_path / "out.vmesh", *sizes, "--strip", "all")
+    assert 784 <= (tmp_path / "out.vmesh").stat().st_size <= 800
+
+
+def test_a_number_of_vertices_that_no_mesh_has_is_told(tmp_path: Path) -> None:
+    Image.fromarray(ramp(5, 6)).save(tmp_path / "in.png")
+    target = tmp_path / "out.vmesh"
+    done = run("encode", tmp_path / "in.png", target, "--vertices", "90")
+    assert done.returncode == 0
+    assert b"at most 34 vertices, not 90" in done.stderr
+    assert vmesh.load(target).n_vertices == 34
+    succeed("encode", tmp_path / "in.png", target, "--overwrite", "--vertices", "30")
+
+
+@pytest.fixture
+def masked(tmp_path: Path) -> tuple[Path, Path]:
+    """A photograph of 128 x 96 pixels, and a mask of 32 x 24 whose left half is white."""
+    photograph = np.asarray(Image.open(CHELSEA).convert("RGB"))[80:176, 100:228]
+    Image.fromarray(photograph).save(tmp_path / "in.png")
+    mask = np.zeros((24, 32), dtype=np.uint8)
+    mask[:, :16] = 255
+    Image.fromarray(mask).save(tmp_path / "mask.png")
+    return tmp_path / "in.png", tmp_path / "mask.png"
+
+
+def test_what_is_white_in_a_mask_comes_out_better(masked: tuple[Path, Path]) -> None:
+    photograph, mask = masked
+    original = np.asarray(Image.open(photograph))
+    target = photograph.with_suffix(".vmesh")
+    reached = []
+    masks: tuple[tuple[str | Path, ...], ...] = ((), ("--overwrite", "--mask", mask))
+    for options in masks:
+        succeed("encode", photograph, target, "--target-size", "900", "-e", "2", *options)
+        assert 882 <= target.stat().st_size <= 900
+        reached.append(psnr(vmesh.render(vmesh.load(target))[:, :60], original[:, :60]))
+    assert reached[1] > reached[0] + 1
+
+
+@pytest.mark.parametrize(
+    ("command", "suffix"),
+    [
+        ("to-svg", ".svg"),
+        ("to-pdf", ".pdf"),
+        ("to-html", ".html"),
+        ("export", ".txt"),
+        ("inspect", ".png"),
+    ],
+)
+def test_a_mask_is_heard_wherever_a_photograph_is_encoded(
+    masked: tuple[Path, Path], command: str, suffix: str
+) -> None:
+    photograph, mask = masked
+    target = photograph.with_name(f"out{suffix}")
+    written = []
+    masks: tuple[tuple[str | Path, ...], ...] = ((), ("--overwrite", "--mask", mask))
+    for options in masks:
+        succeed(command, photograph, target, "--vertices", "60", "-e", "2", *options)
+        written.append(target.read_bytes())
+    assert written[0] != written[1]
+
+
+def test_a_mask_that_says_nothing_is_told_by_its_name(masked: tuple[Path, Path]) -> None:
+    photograph, mask = masked
+    Image.new("L", (5, 5)).save(mask)
+    target = photograph.with_suffix(".vmesh")
+    text = fail(1, "encode", photograph, target, "--mask", mask)
+    assert "mask.png: the mask is black all over" in text
+    assert not target.exists()
+    missing = photograph.with_name("none.png")
+    assert "none.png" in fail(1, "encode", photograph, target, "--mask", missing)
 
 
 @pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])

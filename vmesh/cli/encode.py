@@ -14,6 +14,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
     json_option,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
@@ -21,7 +22,7 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, read_photograph, tell
+from vmesh.cli.streams import STANDARD, read_photograph, read_weights, remark, tell
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.metadata.privacy import Strip
 
@@ -38,11 +39,14 @@ _MAKING: Final = Making(PICTURES, (FILE_SUFFIX,), FILE_SUFFIX)
 @job_arguments("INPUT", "OUTPUT.vmesh")
 @picture_options
 @strip_option("none")
+@mask_option
 @encoder_options
 @limit_options
 @json_option
 @quiet_option
-def command(strip: Strip | None, as_json: bool, quiet: bool, **options: Any) -> None:
+def command(
+    strip: Strip | None, mask: str | None, as_json: bool, quiet: bool, **options: Any
+) -> None:
     """Turn photographs into .vmesh files.
 
     Without OUTPUT it is named after INPUT, with .vmesh at its end. With -o DIR there may be many
@@ -55,7 +59,7 @@ def command(strip: Strip | None, as_json: bool, quiet: bool, **options: Any) -> 
         raise click.UsageError("--json and the file cannot both go to standard output")
 
     def work(job: Job) -> None:
-        figures = encode(job, settings, reading, limits, strip, quiet=quiet)
+        figures = encode(job, settings, reading, limits, strip, mask, quiet=quiet)
         if as_json:
             tell(json.dumps({"source": job.source} | figures if jobs.are_many else figures))
 
@@ -68,11 +72,12 @@ def encode(
     reading: PictureOptions,
     limits: Limits,
     strip: Strip | None,
+    mask: str | None,
     *,
     quiet: bool,
 ) -> dict[str, Any]:
     """Encode one photograph; returns figures about its file."""
-    from vmesh.codec.writer import dumps
+    from vmesh.codec.writer import dumps, metadata_size
     from vmesh.encoder.pipeline import count_steps, encode_with
     from vmesh.formats.metadata.privacy import stripped
 
@@ -81,11 +86,23 @@ def encode(
         report("reading")
         picture = read_photograph(job.source, reading, limits)
         metadata = stripped(picture.metadata, strip or "none")
-        mesh = encode_with(picture.array, settings, metadata=metadata, progress=report)
+        weights = read_weights(mask, picture, limits)
+        try:
+            mesh = encode_with(
+                picture.array, settings, weights=weights, metadata=metadata, progress=report
+            )
+        except ValueError as error:
+            if settings.target_size is None or strip == "all" or not metadata_size(metadata):
+                raise
+            raise ValueError(f"{error} (--strip leaves them out)") from None
         limits.check_vertices(mesh.n_vertices)
         report("writing")
         data = dumps(mesh)
         job.write(lambda stream: stream.write(data))
+    wanted = settings.n_vertices(mesh.width, mesh.height) or mesh.n_vertices
+    if settings.method == "adaptive" and wanted != mesh.n_vertices:
+        bound = "at least" if mesh.n_vertices > wanted else "at most"
+        remark(f"{job.source}: a mesh of it has {bound} {mesh.n_vertices} vertices, not {wanted}")
     return {
         "width": mesh.width,
         "height": mesh.height,

@@ -11,6 +11,7 @@ from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     take_picture_options,
@@ -27,10 +28,11 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, MESH_SUFFIXES)
 @job_arguments("INPUT", "OUTPUT", has_folder=False)
 @click.option("--ascii", is_flag=True, help="PLY as text instead of binary.")
 @picture_options
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
-def command(ascii: bool, quiet: bool, **options: Any) -> None:
+def command(ascii: bool, mask: str | None, quiet: bool, **options: Any) -> None:
     """Turn a .vmesh file, or a photograph, into a mesh for other programs, by the name of OUTPUT.
 
     PLY, OBJ and glTF (.glb) with a colour at every vertex need trimesh: pip install trimesh. A
@@ -48,6 +50,7 @@ def command(ascii: bool, quiet: bool, **options: Any) -> None:
         raise click.UsageError("--ascii is for PLY")
 
     def work(job: Job) -> None:
-        convert(job, format_of(target), settings, reading, limits, quiet=quiet, **chosen)
+        wanted = format_of(target)
+        convert(job, wanted, settings, reading, limits, quiet=quiet, mask=mask, **chosen)
 
     jobs.run(work)

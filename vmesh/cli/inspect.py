@@ -13,13 +13,14 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     take_picture_options,
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, read_photograph
+from vmesh.cli.streams import STANDARD, read_photograph, read_weights
 from vmesh.inspection.sheet import SHEET_SUFFIXES
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ def _region_of(text: str) -> Region:
     help="Pixels of a drawing for each of the picture; unless given, what suits a screen.",
 )
 @picture_options
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
@@ -65,6 +67,7 @@ def command(
     show: str,
     zoom: str | None,
     scale: float | None,
+    mask: str | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -89,7 +92,12 @@ def command(
             if region is not None:
                 region.check_within(picture.array.shape[1], picture.array.shape[0])
             found = inspect_encoding(
-                picture.array, settings, metadata=picture.metadata, limits=limits, progress=report
+                picture.array,
+                settings,
+                weights=read_weights(mask, picture, limits),
+                metadata=picture.metadata,
+                limits=limits,
+                progress=report,
             )
             report("drawing")
             if show == "sheet":

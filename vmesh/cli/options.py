@@ -182,6 +182,12 @@ def strip_option(default: str) -> Callable[[Command], Command]:
     )
 
 
+mask_option = click.option(
+    "--mask",
+    metavar="PICTURE",
+    help="Grey picture of any size, stretched over the photograph: the whiter, the more an error "
+    "counts there.",
+)
 quiet_option = click.option("--quiet", is_flag=True, help="No progress on a terminal.")
 json_option = click.option("--json", "as_json", is_flag=True, help="Print figures as JSON.")
 

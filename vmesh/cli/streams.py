@@ -19,6 +19,7 @@ from vmesh.errors import FormatError, ImageError, LimitError, PartialFileWarning
 from vmesh.files import Times, atomic_output
 
 if TYPE_CHECKING:
+    from vmesh.arrays import Float64Array
     from vmesh.formats.picture.options import PictureOptions
     from vmesh.formats.picture.picture import Picture
     from vmesh.limits import Limits
@@ -127,6 +128,19 @@ def read_mesh_or_photograph(path: str, options: PictureOptions, limits: Limits) 
     if is_vmesh(data) or Path(path).suffix.lower() == FILE_SUFFIX:
         return _mesh_of(data, path, limits)
     return _photograph_of(data, path, options, limits)
+
+
+def read_weights(mask: str | None, photograph: Picture, limits: Limits) -> Float64Array | None:
+    """Weights of a photograph's pixels by the mask in an image file; None without one."""
+    if mask is None:
+        return None
+    from vmesh.formats.picture.mask import read_mask
+
+    height, width = photograph.array.shape[:2]
+    try:
+        return read_mask(io.BytesIO(read_input(mask)), width, height, limits=limits)
+    except (ImageError, LimitError) as error:
+        raise type(error)(f"{shown(mask)}: {error}") from None
 
 
 def _mesh_of(data: bytes, path: str, limits: Limits, *, allow_partial: bool = False) -> Mesh:

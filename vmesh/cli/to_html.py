@@ -11,6 +11,7 @@ from vmesh.cli.jobs import Job, Making, job_arguments, take_jobs
 from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
@@ -34,12 +35,14 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".html", ".htm"), ".html")
 )
 @picture_options
 @strip_option("private")
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
 def command(
     element: str | None,
     strip: Strip | None,
+    mask: str | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -59,7 +62,7 @@ def command(
 
     def work(job: Job) -> None:
         html = FORMATS[".html"]
-        convert(job, html, settings, reading, limits, quiet=quiet, strip=strip)
+        convert(job, html, settings, reading, limits, quiet=quiet, mask=mask, strip=strip)
 
     take_jobs(options, _MAKING).run(work)
 

@@ -13,6 +13,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
@@ -71,6 +72,7 @@ _MAKING: Final = Making(PICTURES_AND_MESHES, (".pdf",), ".pdf")
 )
 @picture_options
 @strip_option("private")
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
@@ -82,6 +84,7 @@ def command(
     margin: str | None,
     backend: Backend,
     strip: Strip | None,
+    mask: str | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -107,6 +110,7 @@ def command(
             reading,
             limits,
             quiet=quiet,
+            mask=mask,
             strip=strip,
             mode=mode,
             page_width=page_width,
@@ -122,7 +126,7 @@ def command(
 
         given = read_mesh_or_photograph(source, reading, limits)
         with show_progress(f"converting{place}", count_steps(settings), quiet=quiet) as report:
-            mesh = mesh_of(given, settings, report)
+            mesh = mesh_of(given, settings, mask, limits, report)
         limits.check_vertices(mesh.n_vertices)
         return mesh.replaced(metadata=stripped(mesh.metadata, strip or "private"))
 

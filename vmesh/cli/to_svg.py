@@ -12,6 +12,7 @@ from vmesh.cli.limits import limit_options, take_limits
 from vmesh.cli.options import (
     checked_by,
     encoder_options,
+    mask_option,
     picture_options,
     quiet_option,
     strip_option,
@@ -91,6 +92,7 @@ _MAKING_OF_URIS: Final = Making(PICTURES_AND_MESHES, (".txt",), ".txt")
 )
 @picture_options
 @strip_option("private")
+@mask_option
 @encoder_options
 @limit_options
 @quiet_option
@@ -105,6 +107,7 @@ def command(
     width: str | None,
     height: str | None,
     strip: Strip | None,
+    mask: str | None,
     quiet: bool,
     **options: Any,
 ) -> None:
@@ -135,6 +138,7 @@ def command(
             reading,
             limits,
             quiet=quiet,
+            mask=mask,
             strip=strip,
             n_stages=n_stages,
             mode=mode,
