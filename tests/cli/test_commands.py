@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -99,6 +100,31 @@ def test_a_size_that_no_mesh_fits_in_is_told_in_one_sentence(tmp_path: Path) -> 
     text = fail(1, "encode", CHELSEA, target, "--target-size", "20", "-e", "1")
     assert "smallest file" in text
     assert not target.exists()
+
+
+def test_a_size_that_metadata_alone_exceed_is_told_with_their_share(tmp_path: Path) -> None:
+    photograph = Image.fromarray(np.asarray(Image.open(CHELSEA).convert("RGB"))[:64, :96])
+    exif = Image.Exif()
+    random = np.random.default_rng(1)
+    exif[0x010E] = "".join(map(chr, random.integers(33, 123, 3000)))
+    photograph.save(tmp_path / "in.jpg", exif=exif)
+    sizes = "--target-size", "800", "-e", "1"
+    text = fail(1, "encode", tmp_path / "in.jpg", tmp_path / "out.vmesh", *sizes)
+    found = re.search(r"takes (\d+) bytes, (\d+) of them metadata \(--strip leaves", text)
+    assert found is not None
+    assert 800 < int(found[2]) < int(found[1])
+    succeed("encode", tmp_path / "in.jpg", tmp_path / "out.vmesh", *sizes, "--strip", "all")
+    assert 784 <= (tmp_path / "out.vmesh").stat().st_size <= 800
+
+
+def test_a_number_of_vertices_that_no_mesh_has_is_told(tmp_path: Path) -> None:
+    Image.fromarray(ramp(5, 6)).save(tmp_path / "in.png")
+    target = tmp_path / "out.vmesh"
+    done = run("encode", tmp_path / "in.png", target, "--vertices", "90")
+    assert done.returncode == 0
+    assert b"at most 34 vertices, not 90" in done.stderr
+    assert vmesh.load(target).n_vertices == 34
+    succeed("encode", tmp_path / "in.png", target, "--overwrite", "--vertices", "30")
 
 
 @pytest.mark.parametrize("suffix", ["png", "jpg", "webp", "tif"])

@@ -22,7 +22,7 @@ from vmesh.cli.options import (
     take_settings,
 )
 from vmesh.cli.progress import show_progress
-from vmesh.cli.streams import STANDARD, Reading, read_photograph, tell
+from vmesh.cli.streams import STANDARD, Reading, read_photograph, remark, tell
 from vmesh.codec.layout import FILE_SUFFIX
 from vmesh.formats.metadata.privacy import Strip
 
@@ -73,7 +73,7 @@ def encode(
     quiet: bool,
 ) -> dict[str, Any]:
     """Encode one photograph; returns figures about its file."""
-    from vmesh.codec.writer import dumps
+    from vmesh.codec.writer import dumps, metadata_size
     from vmesh.encoder.pipeline import count_steps, encode_with
     from vmesh.formats.metadata.privacy import stripped
 
@@ -82,13 +82,22 @@ def encode(
         report("reading")
         picture = read_photograph(job.source, reading, limits)
         metadata = stripped(picture.metadata, strip or "none")
-        mesh = encode_with(
-            picture.array, settings, weights=picture.weights, metadata=metadata, progress=report
-        )
+        try:
+            mesh = encode_with(
+                picture.array, settings, weights=picture.weights, metadata=metadata, progress=report
+            )
+        except ValueError as error:
+            if settings.target_size is None or strip == "all" or not metadata_size(metadata):
+                raise
+            raise ValueError(f"{error} (--strip leaves them out)") from None
         limits.check_vertices(mesh.n_vertices)
         report("writing")
         data = dumps(mesh)
         job.write(lambda stream: stream.write(data))
+    wanted = settings.n_vertices(mesh.width, mesh.height) or mesh.n_vertices
+    if settings.method == "adaptive" and wanted != mesh.n_vertices:
+        bound = "at least" if mesh.n_vertices > wanted else "at most"
+        remark(f"{job.source}: a mesh of it has {bound} {mesh.n_vertices} vertices, not {wanted}")
     return {
         "width": mesh.width,
         "height": mesh.height,
