@@ -98,7 +98,7 @@ def test_codecs_are_compared_at_rates_and_at_the_quality_of_the_paper(
 
 def test_codecs_are_compared_in_thumbnails_enlargements_and_drawings(folder: str) -> None:
     parts = ("--part", "thumbnails", "--part", "upscaling", "--part", "pictures")
-    options = ("--images", folder, "--limit", "1", "--reduce", "8", *QUICK)
+    options = ("--images", folder, "--limit", "1", "--reduce", "2", *QUICK)
     tables = run(rate_distortion, *options, *parts)
     titles = [table.title for table in tables]
     assert titles.index("Bytes of lossless files") == len(titles) - 1
