@@ -15,13 +15,12 @@ levels are changed::
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from math import log2, log10
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from vmesh.arrays import Float64Array, SampleArray
+from vmesh.arrays import Float64Array, Int32Array, SampleArray
 from vmesh.codec.writer import dumps, metadata_size
 from vmesh.encoder.draft import Draft, ThinnedDraft, fewest_vertices
 from vmesh.encoder.image import is_small, peak_of
@@ -209,19 +208,28 @@ def meet_psnr(
         )
     best = min(reached(), key=lambda c: (c.psnr > most, c.psnr if c.psnr > most else c.size))
     smallest = min(reached(), key=lambda c: (c.size, -c.psnr))
-    is_worse_for_less = best.psnr <= most and best.size <= _HARDLY_LARGER * smallest.size
-    is_simple = smallest.mesh.n_vertices == fewest_vertices(builder.grid)
-    if smallest.psnr == np.inf and (is_simple or not is_worse_for_less):
+    is_exact = smallest.psnr == np.inf
+    if is_exact and smallest.mesh.n_vertices == fewest_vertices(builder.grid):
         return smallest.mesh
-    if best.psnr <= most or not is_small(builder.image):
-        return best.mesh
-    measure = partial(measure_psnr, samples)
-    mesh = spend(best.mesh, measure, target_psnr, most)
-    if measure(mesh) > most:
+    if best.psnr > most and is_small(builder.image):
         # Where a level of these steps changes too much, one of the finest may not.
-        finest = max(reached(), key=lambda c: (c.psnr, -c.size)).mesh
-        mesh = min(mesh, spend(finest, measure, target_psnr, most), key=measure)
-    return mesh
+        alike = [c for c in reached() if c.mesh.n_vertices == best.mesh.n_vertices]
+        for start in (best, max(alike, key=lambda c: c.psnr)):
+            if best.psnr > most:
+                mesh = _spent(start.mesh, samples, target_psnr, most)
+                best = min(best, _measured(builder, mesh), key=lambda c: c.psnr)
+    is_hardly_larger = best.psnr <= most and best.size <= _HARDLY_LARGER * smallest.size
+    return smallest.mesh if is_exact and not is_hardly_larger else best.mesh
+
+
+def _spent(mesh: Mesh, samples: SampleArray, target_psnr: float, most: float) -> Mesh:
+    """Mesh whose levels were changed until its PSNR is hardly above a target, if they can be."""
+
+    def measure(levels: Int32Array) -> float:
+        return _psnr_of(samples, mesh, mesh.lattice.colors_from_levels(levels))
+
+    levels = spend(mesh.levels, mesh.lattice, measure, target_psnr, most)
+    return mesh.replaced(levels=levels)
 
 
 def _measured(builder: MeshBuilder, mesh: Mesh) -> Candidate:
@@ -275,20 +283,25 @@ def _tune_dense(
 
 def measure_psnr(samples: SampleArray, mesh: Mesh) -> float:
     """PSNR of a mesh at native size over all samples, in decibels; colours as they are seen."""
-    error = float(np.mean(_squared_errors(samples, mesh)))
-    return 10.0 * log10(mesh.lattice.max_sample**2 / error) if error > 0.0 else np.inf
+    return _psnr_of(samples, mesh, mesh.colors)
 
 
 def measure_error(image: WeightedImage, mesh: Mesh) -> float:
     """Squared error of a mesh at native size, summed over all samples as each pixel counts."""
-    return float((_squared_errors(image.samples, mesh) * image.weights[:, :, None]).sum())
+    errors = _squared_errors(image.samples, mesh, mesh.colors)
+    return float((errors * image.weights[:, :, None]).sum())
 
 
-def _squared_errors(samples: SampleArray, mesh: Mesh) -> Float64Array:
-    """Squared error of every sample; colours as they are seen."""
+def _psnr_of(samples: SampleArray, mesh: Mesh, colors: SampleArray) -> float:
+    error = float(np.mean(_squared_errors(samples, mesh, colors)))
+    return 10.0 * log10(mesh.lattice.max_sample**2 / error) if error > 0.0 else np.inf
+
+
+def _squared_errors(samples: SampleArray, mesh: Mesh, colors: SampleArray) -> Float64Array:
+    """Squared error of every sample of a mesh in some colours, as far as they are seen."""
     raster = np.zeros_like(samples)
     vertices = mesh.vertices.astype(np.int64) * (SUBPIXEL // mesh.unit)
-    draw(vertices, mesh.triangles, mesh.colors, raster)
+    draw(vertices, mesh.triangles, colors, raster)
     difference = raster.astype(np.float64) - samples
     if samples.shape[2] == 4:
         difference[:, :, :3] *= samples[:, :, 3:] / mesh.lattice.max_sample

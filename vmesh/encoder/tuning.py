@@ -14,6 +14,8 @@ from typing import Final
 
 import numpy as np
 
+from vmesh.arrays import Int32Array
+from vmesh.color_lattice import ColorLattice
 from vmesh.encoder.draft import Draft
 from vmesh.encoder.image import peak_of
 from vmesh.encoder.mesh_builder import Fit, MeshBuilder
@@ -31,7 +33,9 @@ _COARSER: Final = 12.0
 _BISECTIONS: Final = 12
 _LEAST_MEAN_ERROR: Final = 0.75
 _MANY_VERTICES: Final = 200  # sizes and errors of meshes of more are fine enough
-_MAX_TRIALS: Final = 5000  # of single levels
+# Of single levels: more than one at once, since one may change no pixel.
+_LEVEL_CHANGES: Final = (-13, -5, -2, -1, 1, 2, 5, 13)
+_MAX_TRIALS: Final = 3000
 
 
 def tune_around(draft: Draft, builder: MeshBuilder, judge: Judge) -> int:
@@ -122,24 +126,32 @@ def _mix(fine: Mesh, coarse: Mesh, judge: Judge) -> int | None:
     return None
 
 
-def spend(mesh: Mesh, measure: Callable[[Mesh], float], target_psnr: float, most: float) -> Mesh:
-    """Mesh whose levels were changed, one by one, until its PSNR is between a target and `most`.
+def spend(
+    levels: Int32Array,
+    lattice: ColorLattice,
+    measure: Callable[[Int32Array], float],
+    target_psnr: float,
+    most: float,
+) -> Int32Array:
+    """Levels of a mesh, changed one by one until its PSNR is between a target and `most`.
 
-    Each change is the one that comes closest to the target from above; it ends where there is none.
+    Each change is the first that meets it, or the one that comes closest from above; it ends where
+    there is none.
+    `measure` gives the PSNR with some levels, shape (n, c).
     """
-    best, best_psnr = mesh, measure(mesh)
-    lowest, highest = mesh.lattice.level_bounds()
-    for _ in range(_MAX_TRIALS // (2 * mesh.levels.size)):
-        if best_psnr <= most:
-            break
+    best, best_psnr = levels, measure(levels)
+    lowest, highest = lattice.level_bounds()
+    n_passes = max(2, _MAX_TRIALS // (len(_LEVEL_CHANGES) * levels.size))
+    for _ in range(n_passes if best_psnr > most else 0):
         found, found_psnr = best, best_psnr
-        for (v, z), change in product(np.ndindex(best.levels.shape), (-1, 1)):
-            level = best.levels[v, z] + change
+        for (v, z), change in product(np.ndindex(levels.shape), _LEVEL_CHANGES):
+            level = best[v, z] + change
             if lowest[z] <= level <= highest[z]:
-                levels = best.levels.copy()
-                levels[v, z] = level
-                tried = best.replaced(levels=levels)
+                tried = best.copy()
+                tried[v, z] = level
                 psnr = measure(tried)
+                if target_psnr <= psnr <= most:
+                    return tried
                 if target_psnr <= psnr < found_psnr:
                     found, found_psnr = tried, psnr
         if found is best:
