@@ -89,13 +89,20 @@ def encode(
         How vertices are found: sampled densely, thinned to those that matter most and moved to
         where they serve best; or sampled from the salience and left there.
     quality : int, optional
-        0 to 100: the error that a bit has to save, the same for every picture ("adaptive").
+        0 to 100: the error that a bit has to save, the same for every picture ("adaptive"). In
+        pictures of fewer than 4,096 pixels more quality never leaves more error, and 100 leaves
+        hardly any.
     target_size : int, optional
-        Bytes of the file, met from below within 2 % ("adaptive").
+        Bytes of the file, met from below within 2 % ("adaptive"). A picture that takes fewer
+        without any error gets no more.
     target_psnr : float, optional
-        Decibels over all samples, met from above within 0.1 dB ("adaptive").
+        Decibels over all samples, met from above within 0.1 dB ("adaptive"), whatever `weights`
+        are. Where no mesh is as close, as in pictures of one colour or of a few pixels, it is the
+        nearest one above that is found, and one without any error if nothing worse is smaller.
     vertices : int, optional
-        Vertices wanted, met exactly, or within 2 % ("blue-noise", and effort 1).
+        Vertices wanted, met exactly, or within 2 % ("blue-noise"). At least there are those of the
+        picture's, or its tiles', corners; at most one more for each pixel: another number counts as
+        the nearest of these.
     density : float, optional
         Vertices wanted per pixel, above 0 and up to 1.
     effort : int
