@@ -98,14 +98,7 @@ def meet_size(
     """
     least = (1 - _SIZE_TOLERANCE) * target_size
     found: list[Candidate] = []
-
-    def judge(mesh: Mesh) -> int:
-        candidate = _measured(builder, mesh)
-        found.append(candidate)
-        if least <= candidate.size <= target_size:
-            return 0
-        return 1 if candidate.size > target_size else -1
-
+    judge = _judge(builder, found, lambda candidate: candidate.size, least, target_size)
     bounds = _Bounds(draft)
     for _ in range(_MAX_ATTEMPTS):
         mesh = builder.build(draft)
@@ -163,14 +156,7 @@ def meet_psnr(
     samples = builder.image.samples
     most = target_psnr + _PSNR_TOLERANCE
     found: list[Candidate] = []
-
-    def judge(mesh: Mesh) -> int:
-        candidate = _measured(builder, mesh)
-        found.append(candidate)
-        if target_psnr <= candidate.psnr <= most:
-            return 0
-        return 1 if candidate.psnr > most else -1
-
+    judge = _judge(builder, found, lambda candidate: candidate.psnr, target_psnr, most)
     gain = _GAIN
     earlier: tuple[float, float] | None = None
     bounds = _Bounds(draft)
@@ -230,6 +216,26 @@ def _spent(mesh: Mesh, samples: SampleArray, target_psnr: float, most: float) ->
 
     levels = spend(mesh.levels, mesh.lattice, measure, target_psnr, most)
     return mesh.replaced(levels=levels)
+
+
+def _judge(
+    builder: MeshBuilder,
+    found: list[Candidate],
+    value_of: Callable[[Candidate], float],
+    least: float,
+    most: float,
+) -> Judge:
+    """Judge of meshes by a value that is to lie between two others; it notes what it has seen."""
+
+    def judge(mesh: Mesh) -> int:
+        candidate = _measured(builder, mesh)
+        found.append(candidate)
+        value = value_of(candidate)
+        if least <= value <= most:
+            return 0
+        return 1 if value > most else -1
+
+    return judge
 
 
 def _measured(builder: MeshBuilder, mesh: Mesh) -> Candidate:
