@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
 import click
@@ -122,7 +123,9 @@ def command(
         n_stages = Style(mode, tolerance, merge, seams).n_stages
     except ValueError as error:
         raise click.UsageError(str(error)) from None
-    photograph = None if fit is None else read_photograph(fit, reading, limits)
+    # Its pixels count alike: a mask says something of the encoding only.
+    unmasked = replace(reading, mask=None)
+    photograph = None if fit is None else read_photograph(fit, unmasked, limits)
 
     def format_for(target: str) -> Format:
         if data_uri:
